@@ -222,13 +222,18 @@ impl State {
         self.upload_beside();
     }
 
+    /// Whether something would be lost if the program ended now.
+    pub(crate) fn asks_before_quitting(&self) -> bool {
+        self.is_changed() || self.work.is_writing() || self.distributions.has_unsaved()
+    }
+
     /// Leaves the flight on the screen, unless something would be lost: then asks first.
     pub(crate) fn leave(&mut self, leaving: Leaving) {
         let writes = leaving == Leaving::Quit && self.work.is_writing();
         if self.is_changed() || writes {
             self.held_back = Some(HeldBack::Leave(leaving));
         } else {
-            self.go(leaving);
+            self.go_on(HeldBack::Leave(leaving));
         }
     }
 
@@ -270,7 +275,11 @@ impl State {
     /// Goes on with what was held back.
     pub(crate) fn go_on(&mut self, held_back: HeldBack) {
         match held_back {
+            HeldBack::Leave(Leaving::Quit) if self.distributions.has_unsaved() => {
+                self.held_back = Some(HeldBack::Tables);
+            }
             HeldBack::Leave(leaving) => self.go(leaving),
+            HeldBack::Tables => self.go(Leaving::Quit),
             HeldBack::Replace { command, .. } => self.apply(*command),
         }
     }

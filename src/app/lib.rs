@@ -78,7 +78,7 @@ use open_flight::OpenFlight;
 use panels::{Inspector, PhotoPanel};
 use photo_view::Middle;
 use size_distributions::{DistributionCommand, Page, PasteForm, ResultTab};
-use state::{HeldBack, Leaving, Severity};
+use state::{Leaving, Severity};
 use viewport::Viewport;
 
 /// Under which name eframe keeps the preferences.
@@ -205,10 +205,9 @@ impl App {
 
     fn hold_back_closing(&mut self, context: &egui::Context) {
         let closes = context.input(|input| input.viewport().close_requested());
-        let loses = self.state.is_changed() || self.state.work.is_writing();
-        if closes && loses && !self.state.may_quit {
+        if closes && self.state.asks_before_quitting() && !self.state.may_quit {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            self.state.held_back = Some(HeldBack::Leave(Leaving::Quit));
+            self.state.leave(Leaving::Quit);
         }
     }
 }

@@ -371,6 +371,48 @@ fn a_bad_table_is_refused_in_one_line() {
     assert_eq!(computed(&desk).analysis.photos.curves.len(), 1);
 }
 
+/// What was pasted goes with the window: that is asked, and a table keeps it.
+#[test]
+fn pasted_tables_are_asked_about_and_saved() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut desk = Desk::new(None);
+    desk.press(Modifiers::COMMAND, Key::Num2);
+    desk.click(Role::Button, "Paste…");
+    paste(&mut desk, "size_cm\tpassing\n1\t10\n2\t35\n4\t80\n8\t100\n");
+    desk.click(Role::Button, "Add table");
+    let quits = |desk: &Desk| desk.harness.state().state().may_quit;
+    desk.press(Modifiers::COMMAND, Key::Q);
+    assert!(desk.says("Pasted tables are in no file") && !quits(&desk));
+    desk.click(Role::Button, "Stay here");
+    desk.press(Modifiers::COMMAND, Key::Q);
+    desk.click(Role::Button, "Save them as a table…");
+    let path = folder.path().join("kept.csv");
+    desk.type_path(&path);
+    desk.click(Role::Button, "Write table");
+    let text = std::fs::read_to_string(&path).expect("a table");
+    assert!(
+        text.starts_with("method,trial,photo,size_cm,percent_passing\n"),
+        "{text}"
+    );
+    assert!(
+        text.ends_with(
+            ",,1,10\npasted 1,,,2,35\npasted 1,,,4,80\npasted 1,,,8,100\n"
+        ),
+        "{text}"
+    );
+    desk.press(Modifiers::COMMAND, Key::Q);
+    assert!(quits(&desk));
+    // Pasted once more, and thrown away.
+    let mut desk = Desk::new(None);
+    desk.press(Modifiers::COMMAND, Key::Num2);
+    desk.click(Role::Button, "Paste…");
+    paste(&mut desk, "size\tpassing\n1\t10\n2\t35\n");
+    desk.click(Role::Button, "Add table");
+    desk.press(Modifiers::COMMAND, Key::Q);
+    desk.click(Role::Button, "Discard them");
+    assert!(quits(&desk));
+}
+
 /// Pastes into the small window, over what is there.
 fn paste(desk: &mut Desk, text: &str) {
     desk.node(Role::TextInput, "Table").click();

@@ -126,6 +126,15 @@ actions! {
             compared.then_some(Command::Ask(Some(Asking::SaveReport)))
         },
     }
+    SAVE_TABLE {
+        label: "Save table…",
+        hover: "Write all curves, pasted ones too, as a table that can be added again",
+        shortcut: None,
+        command: |state| {
+            let some = !state.distributions.sources().is_empty();
+            some.then_some(Command::Ask(Some(Asking::SaveTable)))
+        },
+    }
     READ_AGAIN {
         label: "Read again",
         hover: "Read the flight's files anew, as they are now",
@@ -197,6 +206,7 @@ pub const MENU: &[Option<Action>] = &[
     Some(ADD_KNOWN),
     Some(SAVE_FIGURE),
     Some(SAVE_REPORT),
+    Some(SAVE_TABLE),
     None,
     Some(READ_AGAIN),
     Some(SAVE),

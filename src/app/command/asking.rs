@@ -46,6 +46,8 @@ pub enum Asking {
     SaveFigure,
     /// Where the report on them goes.
     SaveReport,
+    /// Where the table of size distributions goes.
+    SaveTable,
     /// Which list has the control points.
     ControlList,
     /// Which file has the outlines of the selected photo.

@@ -43,6 +43,7 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
                 (actions::edit::REDO, "⟳"),
                 (actions::file::SAVE_FIGURE, "Save figure…"),
                 (actions::file::SAVE_REPORT, "Save report…"),
+                (actions::file::SAVE_TABLE, "Save table…"),
             ] {
                 action_button(state, action, text, ui, commands);
             }

@@ -65,6 +65,7 @@ impl State {
             DistributionCommand::RemoveEffort => self.distributions.effort = None,
             DistributionCommand::SaveFigure(to) => self.save_figure(to),
             DistributionCommand::SaveReport(to) => self.save_report(to),
+            DistributionCommand::SaveTable(to) => self.save_table(to),
         }
     }
 

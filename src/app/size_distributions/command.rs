@@ -39,4 +39,6 @@ pub enum DistributionCommand {
     SaveFigure(Destination),
     /// Writes the report.
     SaveReport(Destination),
+    /// Writes all curves as a table.
+    SaveTable(Destination),
 }

@@ -169,6 +169,8 @@ pub struct SizeDistributions {
     pub effort: Option<EffortFile>,
     /// How long the program's own steps took.
     pub measured: Vec<MeasuredStep>,
+    /// What is in a table that was written.
+    saved: Vec<Arc<Source>>,
 }
 
 impl Default for SizeDistributions {
@@ -185,6 +187,7 @@ impl Default for SizeDistributions {
             pasted: 0,
             effort: None,
             measured: Vec::new(),
+            saved: Vec::new(),
         }
     }
 }
@@ -198,6 +201,13 @@ impl SizeDistributions {
     /// How it is looked at.
     pub fn settings(&self) -> &Settings {
         &self.history.now().settings
+    }
+
+    /// Whether a table that was pasted is in no file.
+    pub fn has_unsaved(&self) -> bool {
+        let is_saved = |source| self.saved.iter().any(|saved| Arc::ptr_eq(saved, source));
+        let mut sources = self.sources().iter();
+        sources.any(|source| source.is_pasted() && !is_saved(source))
     }
 
     /// Whether the result on the screen belongs to the data and settings of now.

@@ -1,4 +1,4 @@
-//! Writing the figure and the report of the size distributions.
+//! Writing the figure, the report and the table of the size distributions.
 
 use std::path::Path;
 
@@ -33,6 +33,41 @@ impl State {
         if self.may_save(&to, DistributionCommand::SaveReport) {
             self.write(to, |computed, _| report(computed).map(String::into_bytes));
         }
+    }
+
+    /// Writes all curves as they were read; asks before a file is replaced.
+    pub(super) fn save_table(&mut self, to: Destination) {
+        self.asking = None;
+        if self.is_busy(Task::SAVE_DISTRIBUTIONS) {
+            return;
+        }
+        let command = |to| Command::Distributions(DistributionCommand::SaveTable(to));
+        if !self.may_write(&to, Kind::Result, &self.read(), command) {
+            return;
+        }
+        let (sources, read) = (self.distributions.sources().to_vec(), self.read());
+        let work = move |_: &Progress| {
+            let sets: Vec<_> = sources.iter().map(|source| &source.set).collect();
+            let Destination { path, replace } = to;
+            let no_memory =
+                |error| Fault::new(format!("it cannot be made ({error})"), "free memory");
+            let written = exports::points_of_curves_csv(&sets)
+                .map_err(no_memory)
+                .and_then(|text| {
+                    files::write(&path, text.as_bytes(), Kind::Result, &read, replace)
+                });
+            match written {
+                Ok(()) => Ok((path, sources)),
+                Err(fault) => Err(FileError::new(&path, fault).to_string()),
+            }
+        };
+        self.start(Task::SAVE_DISTRIBUTIONS, work, |state, written| {
+            let path = written.map(|(path, sources)| {
+                state.distributions.saved = sources;
+                path
+            });
+            state.take_written(path);
+        });
     }
 
     /// Whether the file can be written now; else asks, or says why not.

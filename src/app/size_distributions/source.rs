@@ -53,6 +53,11 @@ impl Source {
         }
     }
 
+    /// Whether it is in no file but a table that is written of it.
+    pub fn is_pasted(&self) -> bool {
+        self.path.is_none() && self.fragments.is_none()
+    }
+
     /// Makes its curves differ in their labels from those of `others`: where a trial has no name, it
     /// is called after this source, and that is said.
     ///

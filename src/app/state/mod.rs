@@ -51,6 +51,8 @@ pub struct LogLine {
 pub enum HeldBack {
     /// Leaving the flight on the screen.
     Leave(Leaving),
+    /// Leaving the program, and with it tables that were pasted.
+    Tables,
     /// Writing where there is something already.
     Replace {
         /// What writes, and may replace.

@@ -6,6 +6,7 @@ mod comparison;
 mod effort;
 mod figure;
 mod fit;
+mod points;
 mod report;
 mod text_table;
 
@@ -18,6 +19,7 @@ pub use figure::{
     Series, SizeAxis, SizeTick, figure_of_comparison, figure_of_fits, figure_png, figure_svg,
 };
 pub use fit::{FitReport, FittedCurve, fit_csv, fit_json, fit_table};
+pub use points::points_of_curves_csv;
 pub use report::{ComparisonReport, comparison_report};
 
 use crate::fragmentation::{Comparison, MethodCurve};

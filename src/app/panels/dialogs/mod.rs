@@ -23,7 +23,7 @@ use crate::open_flight::OpenFlight;
 use crate::panels::path_field::{path_field, path_to_write, taken_path};
 use crate::panels::reconstruct_offer;
 use crate::panels::size_distributions::{
-    add_distributions, add_effort, paste, save_figure, save_report,
+    add_distributions, add_effort, paste, save_figure, save_report, save_table,
 };
 use crate::state::{HeldBack, State};
 use crate::typed::typed;
@@ -61,6 +61,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::AddEffort => "Add times of steps",
             Asking::SaveFigure => "Save figure",
             Asking::SaveReport => "Save report",
+            Asking::SaveTable => "Save table",
             Asking::ControlList => "Load control points",
             Asking::Masks => "Outlines of another tool",
             Asking::Network => "A network of yours",
@@ -109,6 +110,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::AddEffort => add_effort(state, ui, commands),
                     Asking::SaveFigure => save_figure(state, ui, commands),
                     Asking::SaveReport => save_report(state, ui, commands),
+                    Asking::SaveTable => save_table(state, ui, commands),
                     Asking::ControlList => control_list(state, ui, commands),
                     Asking::Masks => masks(state, ui, commands),
                     Asking::Network => network(state, ui, commands),
@@ -138,6 +140,7 @@ fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Some(HeldBack::Replace { command, there }) => {
                 replace(command, there, ui, commands);
             }
+            Some(HeldBack::Tables) => pasted_tables(ui, commands),
             _ if state.is_changed() => match &state.open {
                 Some(open)
                     if open.files.origin.is_surface_alone()
@@ -167,6 +170,26 @@ fn plan_alone(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             commands.push(Command::SaveFirst);
         }
         if ui.button("Discard the plan").clicked() {
+            commands.push(Command::Discard);
+        }
+        if ui.button("Stay here").clicked() {
+            commands.push(Command::Keep);
+        }
+    });
+}
+
+fn pasted_tables(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.heading("Pasted tables are in no file");
+    ui.label(
+        "Size distributions that were pasted go with the window, unless they are saved as a table.",
+    );
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        if ui.button("Save them as a table…").clicked() {
+            commands.push(Command::Keep);
+            commands.push(Command::Ask(Some(Asking::SaveTable)));
+        }
+        if ui.button("Discard them").clicked() {
             commands.push(Command::Discard);
         }
         if ui.button("Stay here").clicked() {

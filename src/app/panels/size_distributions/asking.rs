@@ -75,6 +75,21 @@ pub(in crate::panels) fn save_report(
     }
 }
 
+/// Where the table goes.
+pub(in crate::panels) fn save_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.label("All curves with one line a point, as they were read: it can be added again, also to 'fragscale psd'.");
+    let browse = [(
+        "Browse…",
+        Dialog::new_file("Save table", "size-distributions.csv"),
+    )];
+    let start = beside(state, "size-distributions.csv");
+    if let Some(path) = path_to_write(state, ui, &start, &browse, "Write table", commands) {
+        commands.push(Command::Distributions(DistributionCommand::SaveTable(
+            path.into(),
+        )));
+    }
+}
+
 /// A name beside the first file that was added. The bundled flight's folder stays as it came.
 fn beside(state: &State, name: &str) -> PathBuf {
     let bundled = crate::state::bundled::sample_flight();

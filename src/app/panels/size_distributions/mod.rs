@@ -21,7 +21,7 @@ mod settings;
 mod table;
 mod welcome;
 
-pub(super) use asking::{add_distributions, add_effort, save_figure, save_report};
+pub(super) use asking::{add_distributions, add_effort, save_figure, save_report, save_table};
 pub(super) use paste::paste;
 
 use crate::NARROW;
