@@ -9,7 +9,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use super::OutputUnit;
 use super::outputs::AnswerArguments;
 use crate::formats::{DistributionColumns, FileError, read_size_distributions};
-use crate::fragmentation::{DistributionSet, Model};
+use crate::fragmentation::{DistributionSet, Model, Weighting};
 
 /// The columns of every table of size distributions.
 #[derive(Debug, Args)]
@@ -101,13 +101,17 @@ pub(super) struct DistributionArguments {
 }
 
 impl DistributionArguments {
-    /// The curves of all files in the unit of the first, with what was mended.
-    pub(super) fn read(&self) -> Result<(DistributionSet, Vec<String>), String> {
+    /// The curves of all files in the unit of the first, with what was mended; `merging` is by what they are to be merged.
+    pub(super) fn read(
+        &self,
+        merging: Weighting,
+    ) -> Result<(DistributionSet, Vec<String>), String> {
         let columns = DistributionColumns {
             method: self.method.clone(),
             trial: self.trial.clone(),
             photo: self.photo.clone(),
             weight: self.weight.clone(),
+            merging,
             ..self.columns.columns()
         };
         let mut read: Vec<(&Path, String, DistributionSet)> = Vec::new();

@@ -8,12 +8,13 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use super::Answer;
 use super::distribution_arguments::{DistributionArguments, FittingArguments};
 use super::written_beside::{check_report_name, drawn_figures, figure_formats, write_all};
-use crate::exports::{self, ComparisonReport, SizeShift};
+use crate::exports::{self, ComparisonReport};
 use crate::files::Kind;
 use crate::fragmentation::{
-    Analysis, AnalysisOptions, PercentileShift, SIGNIFICANCE, SieveSeries, Weighting,
+    Analysis, AnalysisOptions, MethodCurve, SIGNIFICANCE, SieveSeries, Weighting,
 };
 use crate::jobs::Progress;
+use crate::units::LengthUnit;
 
 #[derive(Debug, Args)]
 pub(super) struct CompareArguments {
@@ -73,14 +74,14 @@ fn series() -> impl TypedValueParser<Value = SieveSeries> {
 
 /// Reads, analyses, draws; writes when all of it went well.
 pub(super) fn compare(arguments: &CompareArguments, progress: &Progress) -> Result<Answer, String> {
-    compare_shifts(arguments, progress).map(|(answer, _)| answer)
+    compare_with(arguments, progress).map(|(answer, _)| answer)
 }
 
-/// The same, with the shifts of the first method that is held against the reference.
-pub(super) fn compare_shifts(
+/// The same, with the reference that all were held against, and the unit of its sizes.
+pub(super) fn compare_with(
     arguments: &CompareArguments,
     progress: &Progress,
-) -> Result<(Answer, Vec<SizeShift>), String> {
+) -> Result<(Answer, (MethodCurve, LengthUnit)), String> {
     let fitting = &arguments.fitting;
     let formats = figure_formats(&fitting.figure)?;
     if let Some(report) = &arguments.report {
@@ -91,7 +92,7 @@ pub(super) fn compare_shifts(
         outputs = outputs.and(path, Kind::Result)?;
     }
     progress.stage("reading");
-    let (read, mut warnings) = arguments.table.read()?;
+    let (read, mut warnings) = arguments.table.read(arguments.merge)?;
     let options = AnalysisOptions {
         model: fitting.model,
         merging: arguments.merge,
@@ -128,20 +129,6 @@ pub(super) fn compare_shifts(
     )?;
     write_all(pending, &outputs)?;
     let text = outputs.deliver(text)?;
-    // Beside measured sizes stand shifts of measured sizes; a function's where one of both was not.
-    let reference = &comparison.reference;
-    let shifts = comparison.methods.first().map(|method| {
-        let of_percent = |shift: &PercentileShift| {
-            let percent = shift.percent;
-            let measured = method.curve.measured_size_at(percent);
-            let both = measured.zip(reference.measured_size_at(percent));
-            let off = both.map(|(size, reference)| 100.0 * (size / reference - 1.0));
-            SizeShift {
-                percent,
-                off_percent: off.unwrap_or(shift.shift_percent),
-            }
-        };
-        method.shift.percentiles.iter().map(of_percent).collect()
-    });
-    Ok((Answer::new(text, warnings), shifts.unwrap_or_default()))
+    let reference = comparison.reference.clone();
+    Ok((Answer::new(text, warnings), (reference, comparison.unit)))
 }

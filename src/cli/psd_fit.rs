@@ -10,7 +10,7 @@ use super::written_beside::{drawn_figures, figure_formats, write_all};
 use crate::exports::{self, FitReport, FittedCurve, FittedDistribution};
 use crate::fault::Fault;
 use crate::files::Kind;
-use crate::formats::{FileError, read_point_weights, read_size_distributions};
+use crate::formats::{DistributionColumns, FileError, read_point_weights, read_size_distributions};
 use crate::fragmentation::{FitOptions, LabelledDistribution, fit_each};
 use crate::jobs::Progress;
 
@@ -23,8 +23,8 @@ pub(super) struct FitArguments {
     /// The largest size, where it is known, in the unit of the table; it is not fitted then.
     #[arg(long, value_name = "SIZE")]
     xmax: Option<f64>,
-    /// A column with a weight for each size; without it all points count the same.
-    #[arg(long, value_name = "COLUMN", requires = "size")]
+    /// A column with a weight for each size, beside the column of sizes (--size); without it all points count the same.
+    #[arg(long, value_name = "COLUMN")]
     weights: Option<String>,
     /// The confidence of bands; a figure's have 95 %.
     #[arg(long, value_parser = level, default_value_t = 0.95)]
@@ -49,8 +49,18 @@ pub(super) fn fit(arguments: &FitArguments, progress: &Progress) -> Result<Answe
     for figure in &fitting.figure {
         outputs = outputs.and(figure, Kind::Result)?;
     }
-    let (set, mut warnings) = read_size_distributions(path, &arguments.columns.columns())
-        .map_err(|error| error.to_string())?;
+    if arguments.weights.is_some() && arguments.columns.size.is_none() {
+        return Err(
+            "--weights needs the column of sizes that they belong to, too (--size COLUMN)"
+                .to_owned(),
+        );
+    }
+    let columns = DistributionColumns {
+        point_weight: arguments.weights.clone(),
+        ..arguments.columns.columns()
+    };
+    let (set, mut warnings) =
+        read_size_distributions(path, &columns).map_err(|error| error.to_string())?;
     let weights = match (&arguments.columns.size, &arguments.weights) {
         (Some(size), Some(column)) => {
             let (weights, mended) =

@@ -85,12 +85,15 @@ pub fn delineate(
     Ok(found.outlines.into_labels())
 }
 
-/// What is left out is no rock.
-pub fn leave_out(labels: &mut LabelImage, left_out: &[bool]) {
+/// What is left out is no rock. How many pixels were fragments before.
+pub fn leave_out(labels: &mut LabelImage, left_out: &[bool]) -> usize {
     let places = labels.labels.iter_mut().zip(left_out);
+    let mut fragments = 0;
     for (label, _) in places.filter(|(_, is_left_out)| **is_left_out) {
+        fragments += usize::from(*label != NOT_ROCK && *label != FINES);
         *label = NOT_ROCK;
     }
+    fragments
 }
 
 /// Small fragments become fines; the others are numbered anew. What number each has now, in the order of those

@@ -29,19 +29,20 @@ impl PhotoFragments {
             let world = of.world.map_or_else(Vec::new, |of| numbers(&of).to_vec());
             bits(own.into_iter().chain(world))
         });
-        let rest = [self.frame.x, self.frame.y, self.fines, self.limit];
+        let rest = [self.frame.x, self.frame.y, self.fines, self.limit, self.mm];
         json!({"of_photo": bits(rest), "fragments": fragments.collect::<Vec<Value>>()})
     }
 
     /// From JSON; `None` where it is none of these.
     pub fn from_json(value: &Value) -> Option<Self> {
-        let [width, height, fines, limit] = of_bits(value.get("of_photo")?)?.try_into().ok()?;
+        let [width, height, fines, limit, mm] = of_bits(value.get("of_photo")?)?.try_into().ok()?;
         let fragments = value.get("fragments")?.as_array()?.iter().map(fragment);
         Some(Self {
             fragments: fragments.collect::<Option<_>>()?,
             frame: DVec2::new(width, height),
             fines,
             limit,
+            mm,
         })
     }
 }
@@ -148,6 +149,7 @@ mod tests {
             frame: DVec2::new(4000.0, 3000.0),
             fines: 1.0 / 3.0,
             limit: 0.011,
+            mm: 304.8,
         };
         let text = photo.to_json().to_string();
         let read: Value = serde_json::from_str(&text).unwrap();

@@ -14,6 +14,7 @@ use fragscale_core::scale::{FieldGrid, ImageKind, Interval, ScaleField};
 use fragscale_core::units::LengthUnit;
 use image::RgbImage;
 
+use crate::delineating::leave_out;
 use crate::mass::PhotoFragments;
 use crate::measures::{SieveShape, measured};
 
@@ -40,6 +41,19 @@ pub fn left_out(settings: &FlightSettings, photo: &Photo, camera: &Camera) -> Ve
     }
     let mask = picture::mask_of_regions(camera.width, camera.height, &regions);
     mask.pixels().map(|pixel| pixel.0 == [0; 3]).collect()
+}
+
+/// What the scale objects cover that the flight masks is no rock in outlines that were there before them; says so where
+/// fragments lay there.
+pub fn take_off_objects(
+    labels: &mut LabelImage,
+    settings: &FlightSettings,
+    photo: &Photo,
+    camera: &Camera,
+) -> Option<String> {
+    let covered = leave_out(labels, &left_out(settings, photo, camera));
+    (covered > 0)
+        .then(|| "what its scale objects cover is outlined as rock, and counts as none".to_owned())
 }
 
 /// The relative standard error of a photo's scale, the mean of both edges' best line; `None` where it is not known.
@@ -81,14 +95,15 @@ pub fn field(flight: &Flight, photo: &Photo, progress: &Progress) -> Result<Scal
     flight.field(photo, ImageKind::Undistorted, grid, progress)
 }
 
-/// What a photo's fragments are, of which the narrowest that is outlined is `least_across` pixels: [`Habits::least_across`](crate::Habits::least_across) of an
+/// What a photo's fragments are in the world's `unit`, of which the narrowest that is outlined is `least_across` pixels: [`Habits::least_across`](crate::Habits::least_across) of an
 /// engine, `None` of people and other tools.
 pub fn fragments(
     labels: &LabelImage,
     field: &ScaleField,
     shape: SieveShape,
     least_across: Option<f64>,
+    unit: LengthUnit,
 ) -> PhotoFragments {
     let fragments = measured(labels, field, shape);
-    PhotoFragments::new(labels, field, fragments, least_across)
+    PhotoFragments::new(labels, field, fragments, least_across, unit)
 }

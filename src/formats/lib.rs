@@ -64,6 +64,6 @@ pub use tables::grouped_values::{GroupedValues, Groups, grouped_values, read_gro
 pub use tables::places::{places, read_places, typed_places};
 pub use tables::size_distributions::{
     DistributionColumns, PointWeights, read_point_weights, read_size_distributions,
-    size_distributions,
+    size_distributions, without_options,
 };
 pub use tables::table::{NumberRepairs, Row, Table, may_be_thousands};

@@ -369,7 +369,7 @@ fn its_curve_stands_beside_the_sieves() {
     // Once, however often it is taken over.
     let sources = state.distributions.sources();
     assert_eq!(sources.len(), 1);
-    assert_eq!(sources[0].name, "Fragments of IMG_0001.jpg");
+    assert_eq!(sources[0].name, "Fragments of IMG_0001.jpg, Lab trial 1 (learned)");
     assert_eq!(
         sources[0].set.curves[0].labels.method,
         "fragscale (learned)"

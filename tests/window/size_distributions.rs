@@ -395,9 +395,7 @@ fn pasted_tables_are_asked_about_and_saved() {
         "{text}"
     );
     assert!(
-        text.ends_with(
-            ",,1,10\npasted 1,,,2,35\npasted 1,,,4,80\npasted 1,,,8,100\n"
-        ),
+        text.ends_with(",,1,10\npasted 1,,,2,35\npasted 1,,,4,80\npasted 1,,,8,100\n"),
         "{text}"
     );
     desk.press(Modifiers::COMMAND, Key::Q);

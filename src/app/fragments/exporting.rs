@@ -14,7 +14,7 @@ use crate::exports::{
 };
 use crate::fault::{Fault, by_cause};
 use crate::files::{self, FileError, Inputs, Kind};
-use crate::flight::{Flight, LookedUp};
+use crate::flight::{Flight, FlightSettings, LookedUp};
 use crate::formats::read_bytes;
 use crate::jobs::Progress;
 use crate::labels::LabelImage;
@@ -144,6 +144,7 @@ impl State {
             flight: open.flight().clone(),
             crs: open.files.crs.clone(),
             looked_up: open.review.looked_up().clone(),
+            settings: open.settings(),
             unit: self.preferences.unit(),
             warnings,
         };
@@ -178,6 +179,7 @@ struct Export {
     flight: Arc<Flight>,
     crs: Option<String>,
     looked_up: LookedUp,
+    settings: FlightSettings,
     /// Of what is written.
     unit: LengthUnit,
     warnings: Vec<String>,
@@ -252,15 +254,20 @@ impl Export {
         let missing = || format!("the file of photo '{}' is not there", of.name);
         let pixels = read_photo(of.file.as_deref().ok_or_else(missing)?)?;
         let pixels = photo::undistorted(&pixels, camera).map_err(failed)?;
-        let read;
-        let (labels, by, mut notes) = match &of.outlines {
-            Outlines::Now(labels, by) => (labels, by, Vec::new()),
+        let (mut labels, by, mut notes) = match &of.outlines {
+            Outlines::Now(labels, by) => (labels.clone(), by.clone(), Vec::new()),
             Outlines::Saved(files) => {
-                read = read_outlines(files, &of.name, camera, of.file.as_deref())
+                let read = read_outlines(files, &of.name, camera, of.file.as_deref())
                     .map_err(|error| error.to_string())?;
-                (read.outlines.labels(), &read.by, read.notes.clone())
+                (read.outlines.into_labels(), read.by, read.notes)
             }
         };
+        notes.extend(photo::take_off_objects(
+            &mut labels,
+            &self.settings,
+            posed,
+            camera,
+        ));
         // Of outlines of other tools nobody has measured it yet.
         let spread = by.spread.or_else(|| edge_spread(&pixels));
         let outlined = OutlinedBy::Saved(by.habits);
@@ -268,7 +275,7 @@ impl Export {
             flight: &self.flight,
             index: of.index,
             pixels: &pixels,
-            labels,
+            labels: &labels,
             by: outlined,
             spread,
             shape: SieveShape::Calibrated,

@@ -4,6 +4,7 @@ use crate::delineation::intervals::SizeInterval;
 use crate::delineation::mass::{ByMass, PhotoFragments};
 use crate::delineation::measures::Fragment;
 use crate::fault::Fault;
+use crate::flight::ScaleObject;
 
 /// What outlines come to.
 #[derive(Debug)]
@@ -16,6 +17,8 @@ pub struct MeasuredFragments {
     pub intervals: Vec<SizeInterval>,
     /// What is to be said of the outlines, one sentence each.
     pub notes: Vec<String>,
+    /// The scale objects that were taken off the outlines.
+    pub without: Vec<ScaleObject>,
 }
 
 impl MeasuredFragments {

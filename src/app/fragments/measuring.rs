@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use super::MeasuredFragments;
+use super::{MeasuredFragments, PhotoOutlines};
 use crate::delineation;
 use crate::delineation::intervals::{Doubts, SizeInterval, intervals};
 use crate::delineation::mass::{Steps, by_mass};
 use crate::delineation::measures::SieveShape;
 use crate::exports;
 use crate::fault::Fault;
+use crate::flight::{FlightSettings, ScaleObject};
 use crate::formats::{self, DistributionColumns};
 use crate::jobs::Progress;
 use crate::scale::ScaleField;
@@ -30,11 +31,11 @@ impl State {
         let Some(photo) = open.selected else {
             return;
         };
-        let Some(of) = open
-            .fragments
-            .of(photo)
-            .filter(|of| of.measured().is_none())
-        else {
+        let settings = open.settings();
+        let objects = objects_in(&settings, open.name(photo));
+        let is_measured =
+            |of: &PhotoOutlines| of.measured().is_some_and(|of| of.without == objects);
+        let Some(of) = open.fragments.of(photo).filter(|of| !is_measured(of)) else {
             return;
         };
         // As it is when the job begins; while she edits on, the next one is begun when this one ends.
@@ -43,7 +44,7 @@ impl State {
             return;
         }
         let (number, revision) = (open.number, of.revision);
-        let labels = of.now().labels().clone();
+        let mut labels = of.now().labels().clone();
         let (habits, spread) = (of.by().habits, of.by().spread);
         let field = open.fragments.field.as_ref().filter(|(of, _)| *of == photo);
         let field = field.map(|(_, field)| field.clone());
@@ -58,15 +59,20 @@ impl State {
                 Some(field) => field,
                 None => Arc::new(delineation::photo::field(&flight, posed, progress)?),
             };
+            let camera = flight.camera(posed);
+            let covered =
+                delineation::photo::take_off_objects(&mut labels, &settings, posed, camera);
             let least = habits.map(|habits| habits.least_across(spread));
-            let shape = SieveShape::Calibrated;
-            let measured = delineation::photo::fragments(&labels, &field, shape, least);
+            let (shape, unit) = (SieveShape::Calibrated, flight.parts().unit);
+            let measured = delineation::photo::fragments(&labels, &field, shape, least, unit);
             let steps = Steps::of(habits);
             let by_mass = by_mass([(&measured, steps)]);
             let percents = SizeInterval::PERCENTS;
             let intervals = intervals(&[(&measured, steps)], doubts, &percents).unwrap_or_default();
+            let notes = covered.into_iter().chain(measured.notes(&labels));
             let measured = MeasuredFragments {
-                notes: measured.notes(&labels),
+                notes: notes.collect(),
+                without: objects,
                 photo: measured,
                 by_mass,
                 intervals,
@@ -118,7 +124,11 @@ impl State {
         let table = table.map_err(|error| Fault::new(error.to_string(), "report this"))?;
         let (set, warnings) = formats::size_distributions(&table, &DistributionColumns::default())?;
         Ok(Source {
-            name: format!("Fragments of {name}"),
+            name: format!(
+                "Fragments of {name}, {} ({})",
+                open.flight().parts().name,
+                of.by().engine
+            ),
             path: None,
             set,
             warnings,
@@ -126,6 +136,7 @@ impl State {
                 flight: open.files.origin.file().to_owned(),
                 photo,
                 revision: of.revision,
+                objects: measured.without.clone(),
                 unit: world,
             }),
         })
@@ -140,7 +151,16 @@ impl State {
         let of = open.fragments.of(made_of.photo);
         made_of.flight == open.files.origin.file()
             && of.is_some_and(|of| {
-                of.revision != made_of.revision || open.flight().parts().unit != made_of.unit
+                of.revision != made_of.revision
+                    || open.flight().parts().unit != made_of.unit
+                    || objects_in(&open.settings(), open.name(made_of.photo)) != made_of.objects
             })
     }
+}
+
+/// The scale objects of a photo that are taken off its outlines.
+fn objects_in(settings: &FlightSettings, photo: &str) -> Vec<ScaleObject> {
+    let objects = settings.scale_objects.iter();
+    let masked = objects.filter(|object| object.photo == photo && object.mask);
+    masked.cloned().collect()
 }

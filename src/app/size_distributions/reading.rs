@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::source::Source;
 use super::{Page, PasteForm, ResultTab};
 use crate::command::Command;
-use crate::formats::{self, DistributionColumns, Kind};
+use crate::formats::{self, DistributionColumns, Kind, without_options};
 use crate::jobs::Progress;
 use crate::state::{Severity, State};
 use crate::tasks::Task;
@@ -38,8 +38,13 @@ fn is_table(path: &Path) -> bool {
 
 fn source(path: &Path) -> Result<Source, String> {
     let read = formats::read_size_distributions(path, &DistributionColumns::default());
-    let (set, warnings) = read.map_err(|error| error.to_string())?;
-    Ok(Source::of_file(path, set, warnings))
+    let (set, warnings) = read.map_err(|error| without_options(&error.to_string()))?;
+    Ok(Source::of_file(path, set, in_the_window(&warnings)))
+}
+
+/// What is said, without options of the command.
+fn in_the_window(said: &[String]) -> Vec<String> {
+    said.iter().map(|said| without_options(said)).collect()
 }
 
 fn pasted(form: &PasteForm, number: usize) -> Result<Source, String> {
@@ -49,15 +54,17 @@ fn pasted(form: &PasteForm, number: usize) -> Result<Source, String> {
     };
     let name = format!("Pasted table {number}");
     let read = formats::size_distributions(&form.table, &columns);
-    let (set, warnings) = read.map_err(|fault| match fault.line {
-        Some(line) => format!("{name}, line {line}: {fault}"),
-        None => format!("{name}: {fault}"),
+    let (set, warnings) = read.map_err(|fault| {
+        let line = fault
+            .line
+            .map_or_else(String::new, |line| format!(", line {line}"));
+        format!("{name}{line}: {}", without_options(&fault.to_string()))
     })?;
     let mut source = Source {
         name,
         path: None,
         set,
-        warnings,
+        warnings: in_the_window(&warnings),
         fragments: None,
     };
     let typed = |text: &str, other: &str| match text.trim() {
@@ -191,11 +198,7 @@ impl State {
     fn add_source(&mut self, mut source: Source) -> bool {
         let mut edit = self.distributions.history.now().clone();
         let name = source.name.clone();
-        if source.path.is_none() {
-            // The fragments of a photo, measured anew.
-            edit.sources
-                .retain(|other| other.path.is_some() || other.name != name);
-        }
+        edit.sources.retain(|other| !source.replaces(other));
         if let Err(fault) = source.set_apart(&edit.sources) {
             self.say(Severity::Error, &format!("{name}: {fault}"));
             return false;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::fault::Fault;
+use crate::flight::ScaleObject;
 use crate::fragmentation::DistributionSet;
 use crate::units::LengthUnit;
 
@@ -31,6 +32,8 @@ pub struct OfFragments {
     pub photo: usize,
     /// Of its outlines.
     pub revision: u64,
+    /// The scale objects that were taken off these.
+    pub objects: Vec<ScaleObject>,
     /// Of the world's lengths.
     pub unit: LengthUnit,
 }
@@ -58,6 +61,16 @@ impl Source {
         self.path.is_none() && self.fragments.is_none()
     }
 
+    /// Whether another one is of the same photo of the same flight, outlined by the same engine: it takes that one's place.
+    pub fn replaces(&self, other: &Self) -> bool {
+        let of = |source: &Self| {
+            let of = source.fragments.as_ref()?;
+            let method = source.set.curves.first()?.labels.method.clone();
+            Some((of.flight.clone(), of.photo, method))
+        };
+        self.fragments.is_some() && of(self) == of(other)
+    }
+
     /// Makes its curves differ in their labels from those of `others`: where a trial has no name, it
     /// is called after this source, and that is said.
     ///
@@ -65,7 +78,11 @@ impl Source {
     /// Where curves with the same labels are there already.
     pub fn set_apart(&mut self, others: &[Arc<Self>]) -> Result<(), Fault> {
         let others: Vec<_> = others.iter().map(|o| (o.name.as_str(), &o.set)).collect();
-        let stem = self.path.as_deref().and_then(Path::file_stem);
+        let of_flight = self.fragments.as_ref().map(|of| of.flight.as_path());
+        let stem = match of_flight {
+            Some(flight) => flight.parent().and_then(Path::file_name),
+            None => self.path.as_deref().and_then(Path::file_stem),
+        };
         let stem = stem.map_or_else(
             || self.name.clone(),
             |stem| stem.to_string_lossy().into_owned(),

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::files::read_text;
 use crate::formats::{Candidate, Kind, Package, UNFINISHED, candidates, detect};
 use crate::results::LOCK;
 
@@ -41,6 +42,20 @@ pub(super) fn flights(path: &Path, to: &Path) -> Below {
     // Itself, it is named already.
     below.without.retain(|folder| folder != path);
     below
+}
+
+/// Whether a file is a flight or a reconstruction; a season's own file is none.
+pub(super) fn is_flight_file(path: &Path) -> bool {
+    let is_season = || {
+        let text = read_text(path).unwrap_or_default();
+        let table: Option<toml::Table> = text.parse().ok();
+        table.is_some_and(|table| table.contains_key("flight"))
+    };
+    match detect(path) {
+        Ok(Kind::Flight(_)) => !is_season(),
+        Ok(Kind::Reconstruction(..)) => true,
+        _ => false,
+    }
 }
 
 /// Whether a folder holds the results of a season, by its lock.

@@ -166,6 +166,7 @@ impl Season {
         let mut found = Found::default();
         let mut without: Vec<PathBuf> = Vec::new();
         let mut photos_alone: Vec<PathBuf> = Vec::new();
+        let mut passed_over: Vec<PathBuf> = Vec::new();
         let mut once = Once::default();
         for source in &self.sources {
             let matches = pattern::matches(&source.path);
@@ -174,10 +175,20 @@ impl Season {
                 found.notes.push(format!("{path}: nothing is called so"));
             }
             let mut of_source = Vec::new();
+            // What fits a pattern may lie beside the flights, and nobody named it.
+            let by_pattern = pattern::stands_for_others(&source.path);
             for path in matches {
+                if by_pattern && path.is_file() && !below::is_flight_file(&path) {
+                    passed_over.push(path);
+                    continue;
+                }
                 let below = below::flights(&path, to);
                 // What is named fails by itself, and says why.
-                let fails = below.flights.is_empty() && !source.is_watched;
+                let has_none = below.flights.is_empty();
+                let fails = has_none && !source.is_watched && !by_pattern;
+                if has_none && by_pattern && below.photos_alone.is_empty() {
+                    without.push(path.clone());
+                }
                 let is_other = |folder: &PathBuf| !fails || *folder != path;
                 without.extend(below.without.into_iter().filter(is_other));
                 photos_alone.extend(below.photos_alone.into_iter().filter(is_other));
@@ -185,7 +196,11 @@ impl Season {
                     true => vec![path.clone()],
                     false => below.flights,
                 };
-                of_source.extend(flights.into_iter().map(|flight| (path.clone(), flight)));
+                let root = match by_pattern {
+                    true => pattern::fixed_part(&source.path),
+                    false => path,
+                };
+                of_source.extend(flights.into_iter().map(|flight| (root.clone(), flight)));
             }
             let many = of_source.len() > 1;
             if many && let Some(name) = &source.name {
@@ -221,24 +236,26 @@ impl Season {
             format!("the results of '{blast}' go into the folder '{results}'")
         }));
         let said = [
-            (without, ["holds no flight", "hold no flight"]),
+            (passed_over, "file", ["is no flight", "are no flights"]),
+            (without, "folder", ["holds no flight", "hold no flight"]),
             (
                 photos_alone,
+                "folder",
                 [
                     "holds photos alone, without a cloud, and is no flight",
                     "hold photos alone, without a cloud, and are no flights",
                 ],
             ),
         ];
-        for (folders, [of_one, of_many]) in said {
+        for (folders, what, [of_one, of_many]) in said {
             let names = folders.iter().map(|folder| folder.display().to_string());
             let names = first_names(names);
             match folders.len() {
                 0 => {}
-                1 => found.notes.push(format!("1 folder {of_one}: {names}")),
+                1 => found.notes.push(format!("1 {what} {of_one}: {names}")),
                 many => found
                     .notes
-                    .push(format!("{many} folders {of_many}: {names}")),
+                    .push(format!("{many} {what}s {of_many}: {names}")),
             }
         }
         naming::refuse_twins(&found.flights)?;

@@ -8,10 +8,22 @@ pub(super) fn is_pattern(text: &str) -> bool {
     text.contains(['*', '?'])
 }
 
+/// Whether a path stands for others: it has such characters, and is not there as it is.
+pub(super) fn stands_for_others(path: &Path) -> bool {
+    is_pattern(&path.to_string_lossy()) && !path.exists()
+}
+
+/// What stands in front of the first part of a path that stands for others.
+pub(super) fn fixed_part(path: &Path) -> PathBuf {
+    let components = path.components();
+    let is_fixed = |component: &Component<'_>| !matches!(component, Component::Normal(name) if is_pattern(&name.to_string_lossy()));
+    components.take_while(is_fixed).collect()
+}
+
 /// What a path stands for, by name: itself where it has no `*` and no `?`, or is there as it is. Hidden files are
 /// matched by nothing but themselves.
 pub(super) fn matches(path: &Path) -> Vec<PathBuf> {
-    if !is_pattern(&path.to_string_lossy()) || path.exists() {
+    if !stands_for_others(path) {
         return vec![path.to_owned()];
     }
     let mut found = vec![PathBuf::new()];

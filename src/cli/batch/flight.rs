@@ -120,6 +120,7 @@ fn made(told: &FlightTold, progress: &Progress) -> Result<FlightDone, String> {
     let mut findings = FlightFindings::default();
     let mut error: Option<String> = None;
     let mut review: Option<Review> = None;
+    let mut reference = None;
     for asked in &told.asked.steps {
         progress.stage(asked.step.as_str());
         match steps::make(asked, told, &flight, &opened, progress) {
@@ -136,7 +137,7 @@ fn made(told: &FlightTold, progress: &Progress) -> Result<FlightDone, String> {
                 if asked.step == Step::Delineate {
                     findings.sizes = made.sizes;
                 }
-                findings.shifts.extend(made.shifts);
+                reference = made.reference.or(reference);
             }
             Err(failed) => {
                 error = error.or(Some(failed));
@@ -151,6 +152,10 @@ fn made(told: &FlightTold, progress: &Progress) -> Result<FlightDone, String> {
         Some(review) => review,
         None => review_of_scales(&flight, &opened, progress)?,
     };
+    if let Some(reference) = &reference {
+        let unit = told.asked.length_unit()?;
+        findings.shifts = steps::shifts(&findings.sizes, unit, reference);
+    }
     findings.photos = review.count();
     findings.verdicts = VerdictCounts::of(&review);
     findings.taken = day_of(&opened).map(|day| day.to_string());

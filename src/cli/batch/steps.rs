@@ -12,13 +12,15 @@ use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::of_photos::delineate::{Outliners, delineate_of};
 use crate::cli::of_photos::scale_map::scale_map_of;
 use crate::cli::psd::PsdCommand;
-use crate::cli::psd_compare::compare_shifts;
+use crate::cli::psd_compare::compare_with;
 use crate::cli::{Answer, Arguments, Command, deliver_scales, review_of_scales};
 use crate::exports::{FoundSize, SizeShift};
 use crate::files;
 use crate::flight::Review;
+use crate::fragmentation::MethodCurve;
 use crate::jobs::Progress;
 use crate::opening::Opened;
+use crate::units::LengthUnit;
 
 /// What a step found.
 #[derive(Default)]
@@ -30,7 +32,26 @@ pub(super) struct StepMade {
     /// The flight's review, where it made one.
     pub(super) review: Option<Review>,
     pub(super) sizes: Vec<FoundSize>,
-    pub(super) shifts: Vec<SizeShift>,
+    /// What outlined fragments were held against, and the unit of its sizes.
+    pub(super) reference: Option<(MethodCurve, LengthUnit)>,
+}
+
+/// How far the sizes of a flight are from those of the reference, where that was measured: of the sizes that stand beside it, whatever
+/// else lies in the reference's table.
+pub(super) fn shifts(
+    sizes: &[FoundSize],
+    unit: LengthUnit,
+    (reference, of_reference): &(MethodCurve, LengthUnit),
+) -> Vec<SizeShift> {
+    let factor = of_reference.in_units_of(unit);
+    let shift = |found: &FoundSize| {
+        let measured = factor * reference.measured_size_at(found.percent)?;
+        Some(SizeShift {
+            percent: found.percent,
+            off_percent: 100.0 * (found.size? / measured - 1.0),
+        })
+    };
+    sizes.iter().filter_map(shift).collect()
 }
 
 impl From<Answer> for StepMade {
@@ -202,9 +223,9 @@ pub(super) fn make(
                 };
             }
             Command::Psd(PsdCommand::Compare(arguments)) => {
-                let (answer, shifts) = compare_shifts(&arguments, progress)?;
+                let (answer, reference) = compare_with(&arguments, progress)?;
                 made = StepMade {
-                    shifts,
+                    reference: Some(reference),
                     ..answer.into()
                 };
             }

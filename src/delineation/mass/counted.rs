@@ -1,6 +1,6 @@
 //! Whole fragments with the mass that each stands for, and the curve that they come to.
 //!
-//! The curve's rows are sizes of the R10 series (ten to a factor of ten, ISO 3) from the limit on, so that sieves find
+//! The curve's rows are sizes of the R10 series (ten to a factor of ten, ISO 3) of millimetres, whatever the world's lengths count in, from the limit on, so that sieves find
 //! theirs, and about each tenth of the mass the two fragments between which it lies: P10, P20 ... P90 of the curve are
 //! those of the fragments themselves, and not of a line from row to row. What a row says is what passes there, exactly.
 
@@ -28,6 +28,8 @@ pub(crate) struct Counted {
     pub(crate) fines: f64,
     /// Below this size nothing is claimed.
     pub(crate) limit: f64,
+    /// How many millimetres one of these lengths is.
+    pub(crate) mm: f64,
 }
 
 impl Counted {
@@ -45,6 +47,7 @@ impl Counted {
             rock: 0.0,
             fines: 0.0,
             limit: 0.0,
+            mm: 1.0,
         };
         let mut off_surface = 0;
         // Those seen between others, by their places in `whole`.
@@ -54,6 +57,7 @@ impl Counted {
             counted.of_fines += steps.fines * photo.fines;
             counted.limit = counted.limit.max(photo.limit / steps.engine);
             counted.fines += photo.fines;
+            counted.mm = photo.mm;
             for fragment in &photo.fragments {
                 let Some(world) = fragment.world else {
                     off_surface += 1;
@@ -154,8 +158,8 @@ impl Counted {
                     .map(|[size, _]| size),
             );
         }
-        let preferred = |step: i32| 10f64.powf(f64::from(step) / PER_DECADE);
-        let first = (start.log10() * PER_DECADE).ceil() as i32;
+        let preferred = |step: i32| 10f64.powf(f64::from(step) / PER_DECADE) / self.mm;
+        let first = ((start * self.mm).log10() * PER_DECADE).ceil() as i32;
         sizes.extend((first..).map(preferred).take_while(|size| *size < largest));
         sizes.retain(|size| *size >= start);
         sizes.sort_by(f64::total_cmp);
@@ -233,6 +237,7 @@ mod tests {
             rock: 0.5,
             fines: 0.5,
             limit,
+            mm: 1.0,
         }
     }
 
@@ -267,6 +272,32 @@ mod tests {
             assert_eq!(curve.size_at(20.0).is_some(), fines < 0.2);
             assert_eq!(curve.points().last(), Some(&[sorted[999], 100.0]));
         }
+    }
+
+    /// The same fragments in feet have the same rows.
+    #[test]
+    fn rows_are_round_millimetres_in_every_unit() {
+        let in_mm = counted(&[[3.0, 1.0], [7.0, 2.0], [30.0, 1.0]], 2.5, 0.1);
+        let mut in_feet = in_mm.clone();
+        in_feet.mm = 304.8;
+        in_feet.limit /= 304.8;
+        in_feet.whole.iter_mut().for_each(|of| of[0] /= 304.8);
+        let rows = |of: &Counted| -> Vec<[f64; 2]> {
+            let curve = of.curve().unwrap();
+            let points = curve.points().iter();
+            points
+                .map(|[size, percent]| [size * of.mm, *percent])
+                .collect()
+        };
+        let (in_mm, in_feet) = (rows(&in_mm), rows(&in_feet));
+        assert_eq!(in_mm.len(), in_feet.len());
+        for (a, b) in in_mm.iter().zip(&in_feet) {
+            assert!((a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9);
+        }
+        assert!(
+            in_feet.iter().any(|of| (of[0] - 10.0).abs() < 1e-9),
+            "{in_feet:?}"
+        );
     }
 
     /// As a newcomer found: equal discs, a little nearer and farther. All of their sizes are in the curve, from the smallest on.
@@ -309,6 +340,7 @@ mod tests {
             frame: DVec2::splat(100.0),
             fines: 1.0,
             limit: 0.0,
+            mm: 1.0,
         };
         let off = |is_cut| crate::measures::Fragment {
             world: None,

@@ -174,6 +174,7 @@ mod tests {
             frame: glam::DVec2::splat(100.0),
             fines: 0.0,
             limit: 0.9,
+            mm: 1.0,
         }
     }
 

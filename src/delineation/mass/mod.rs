@@ -28,6 +28,7 @@ pub mod tail;
 
 use fragscale_core::fault::Fault;
 use fragscale_core::scale::ScaleField;
+use fragscale_core::units::LengthUnit;
 use fragscale_fragmentation::SizeDistribution;
 use glam::DVec2;
 
@@ -54,10 +55,12 @@ pub struct PhotoFragments {
     pub fines: f64,
     /// The size of the smallest fragment that the photo can show.
     pub limit: f64,
+    /// How many millimetres one of these lengths is.
+    pub mm: f64,
 }
 
 impl PhotoFragments {
-    /// From a photo's label image, the scale field of all its pixels and the measures of its fragments; the narrowest
+    /// From a photo's label image, the scale field of all its pixels and the measures of its fragments, both in `unit`; the narrowest
     /// that its engine outlines is `least_across` pixels. Of what other tools and people outlined (`None`) the limit is the
     /// smallest that counts and has the pixels of the narrowest that an engine outlines: a speck says nothing of the rest.
     pub fn new(
@@ -65,6 +68,7 @@ impl PhotoFragments {
         field: &ScaleField,
         fragments: Vec<Fragment>,
         least_across: Option<f64>,
+        unit: LengthUnit,
     ) -> Self {
         let (mut fines, mut area, mut pixels) = (0.0, 0.0, 0.0);
         for (place, label) in labels.labels.iter().enumerate() {
@@ -95,6 +99,7 @@ impl PhotoFragments {
             fines,
             limit,
             fragments,
+            mm: unit.in_units_of(LengthUnit::Millimetre),
         }
     }
 }
@@ -460,6 +465,7 @@ pub(crate) mod tests {
             frame: DVec2::ONE,
             fines: 0.0,
             limit: 0.0,
+            mm: 1.0,
         };
         let said = |labels: &[u32]| {
             photo.little(&LabelImage {
@@ -482,6 +488,7 @@ pub(crate) mod tests {
             frame: DVec2::splat(100.0),
             fines: 0.0,
             limit: 0.1,
+            mm: 1.0,
         };
         let [small, large] = [1.0, 2.0].map(|size| fragment(size, 0.0, false));
         assert!(photo(vec![small, large]).ball().is_some());
@@ -503,6 +510,7 @@ pub(crate) mod tests {
             frame: DVec2::splat(100.0),
             fines: rock,
             limit: 0.9,
+            mm: 1.0,
         }
     }
 
@@ -543,6 +551,7 @@ pub(crate) mod tests {
             frame: DVec2::splat(100.0),
             fines: 0.0,
             limit: 1.0,
+            mm: 1.0,
         };
         let small = |steps: Steps| {
             let all = by_mass([(&photo, steps)]).unwrap();

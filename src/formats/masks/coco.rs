@@ -5,6 +5,7 @@
 //!   nothing is outlined, and the annotation is left out.
 //! - `iscrowd`: a region of many things that nobody separated, so nothing is claimed of it: it is left out of the rock.
 //!   Where all annotations of an image say so, it is the habit of the program (CVAT marks runs so), and they are fragments.
+//! - What a network found may have a `score`: all are taken, whatever it is, and the least is said.
 //! - The number of a fragment is `fragment` in files of ours.
 
 use std::collections::HashMap;
@@ -47,6 +48,7 @@ pub(super) struct Annotation {
     #[serde(default)]
     iscrowd: Value,
     fragment: Option<u32>,
+    score: Option<f64>,
 }
 
 /// The images of a file.
@@ -65,6 +67,8 @@ pub(super) fn images(
     let mut places: HashMap<String, usize> = HashMap::new();
     let mut found: Vec<OutlinedImage> = Vec::new();
     let mut crowds: Vec<Vec<usize>> = Vec::new();
+    // The least of each image.
+    let mut scores: Vec<f64> = Vec::new();
     for image in images {
         if places.insert(image.id.to_string(), found.len()).is_some() {
             let what = format!("two of its images have the number {}", image.id);
@@ -76,6 +80,7 @@ pub(super) fn images(
             ..OutlinedImage::default()
         });
         crowds.push(Vec::new());
+        scores.push(f64::INFINITY);
     }
     for (annotation, count) in annotations.into_iter().zip(1..) {
         let place = match &annotation.id {
@@ -100,6 +105,7 @@ pub(super) fn images(
                 continue;
             }
         };
+        scores[at] = scores[at].min(annotation.score.unwrap_or(f64::INFINITY));
         if is_crowd {
             crowds[at].push(image.masks.len());
         }
@@ -109,6 +115,14 @@ pub(super) fn images(
             place,
             pieces,
         });
+    }
+    for (image, score) in found.iter_mut().zip(scores) {
+        if score.is_finite() {
+            let what = format!(
+                "its outlines have scores, the least is {score}: all are taken, leave out which are none"
+            );
+            image.notes.say(what);
+        }
     }
     for (image, crowds) in found.iter_mut().zip(crowds) {
         if crowds.len() == image.masks.len() {

@@ -177,6 +177,7 @@ fn tiff(bytes: &[u8], photo: &OutlinedPhoto<'_>, notes: &mut Notes) -> Result<La
     }
     let (width, height) = (layout.width as usize, layout.height as usize);
     let mut labels = vec![FINES; width * height];
+    let mut has_negative = false;
     for index in 0..layout.across() * layout.down() {
         // A tile that is not stored is nothing but zeros.
         let Some(chunk) = file.chunk(&layout, index)? else {
@@ -189,11 +190,17 @@ fn tiff(bytes: &[u8], photo: &OutlinedPhoto<'_>, notes: &mut Notes) -> Result<La
             let pixels = row.iter_mut().skip(left as usize).take(across as usize);
             for (label, stored) in pixels.zip(line.chunks_exact(samples * numbers.bytes())) {
                 let value = numbers.read(stored).unwrap_or(0.0);
+                has_negative |= value < 0.0;
                 *label = of_number(value, layout.bits).ok_or_else(|| {
                     Fault::new(format!("{value} is no number of a fragment"), REMEDY)
                 })?;
             }
         }
+    }
+    if has_negative && labels.contains(&FINES) {
+        notes.say(
+            "its negative numbers are taken for no rock, and 0 for what is no fragment: if 0 is one of the fragments, number them from 1",
+        );
     }
     Ok(labels_of(photo, labels))
 }

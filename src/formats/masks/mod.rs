@@ -257,9 +257,10 @@ fn check_size(width: u32, height: u32, photo: &OutlinedPhoto<'_>) -> Result<(), 
     ))
 }
 
-/// Numbers beyond all that a photo can have are given anew: what is counted by number takes memory for the greatest.
+/// Numbers beyond those of a label image are given anew: it holds no greater ones, and what is counted by number takes memory for the
+/// greatest.
 fn renumbered(mut labels: LabelImage, notes: &mut Notes) -> LabelImage {
-    let most = labels.labels.len().max(usize::from(u16::MAX) - 1);
+    let most = usize::from(u16::MAX) - 1;
     if labels.fragments() <= most {
         return labels;
     }

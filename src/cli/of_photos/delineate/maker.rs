@@ -116,11 +116,19 @@ impl<'a> Maker<'a> {
             let read =
                 read.map_err(|error| Fault::new(error.to_string(), "or say --engine learned"))?;
             let by = OutlinedBy::Saved(read.by.habits);
+            let (mut labels, mut notes) = (read.outlines.into_labels(), read.notes);
+            let settings = &self.opened.settings;
+            notes.extend(photo::take_off_objects(
+                &mut labels,
+                settings,
+                photo,
+                camera,
+            ));
             return Ok(Outlined {
-                labels: read.outlines.into_labels(),
+                labels,
                 by,
                 spread,
-                notes: read.notes,
+                notes,
             });
         }
         let by = OutlinedBy::engine(self.engine, camera.width, camera.height);

@@ -9,7 +9,9 @@ use crate::delineation::mass::{LOOSE, Step, WantedSteps};
 use crate::delineation::tail::Tail;
 use crate::exports::MeasuredPhoto;
 use crate::fault::Fault;
-use crate::formats::{DistributionColumns, FileError, read_bytes, size_distributions};
+use crate::formats::{
+    DistributionColumns, FileError, read_bytes, size_distributions, without_options,
+};
 use crate::units::LengthUnit;
 
 /// `--steps` and what they need.
@@ -151,8 +153,8 @@ impl MassArguments {
         let bytes = read_bytes(&path).map_err(|error| error.to_string())?;
         let text = String::from_utf8_lossy(&bytes);
         let (set, said) = size_distributions(&text, &DistributionColumns::default()).map_err(at)?;
+        let said = said.iter().map(|said| without_options(said));
         let said = said
-            .into_iter()
             .map(|said| format!("{}: {said}", path.display()))
             .collect();
         let set = set.in_unit(world).map_err(at)?;

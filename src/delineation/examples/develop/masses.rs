@@ -5,6 +5,7 @@ use std::path::Path;
 
 use fragscale_core::jobs::Progress;
 use fragscale_core::picture;
+use fragscale_core::units::LengthUnit;
 use fragscale_delineation::mass::{self, PhotoFragments, Steps};
 use fragscale_delineation::measures::{SieveShape, measured};
 use fragscale_delineation::{Engine, delineate};
@@ -66,6 +67,7 @@ pub(super) fn masses(engine: Option<&dyn Engine>, flights: &[&str]) -> Result<()
                 &field,
                 fragments,
                 Some(across),
+                LengthUnit::Metre,
             ));
         }
         // The same of photos of all sizes.

@@ -183,6 +183,11 @@ fn what_is_mended_or_left_out_is_said() {
         masks.notes,
         ["a region of many things (iscrowd) is left out of the rock (annotation 5)"]
     );
+    let found = annotation(1, PLAIN).replace("\"iscrowd\":0", "\"score\":0.31");
+    assert_eq!(
+        of(&coco(&found)).notes,
+        ["its outlines have scores, the least is 0.31: all are taken, leave out which are none"]
+    );
 }
 
 fn refused(text: &str) -> Fault {

@@ -3,10 +3,11 @@
 use super::DistributionColumns;
 use super::names::{
     PASSING_NAMES, PercentileColumn, RetainedName, Role, SizeText, SizeUnit, is_amount, role,
-    sample_of,
+    sample_of, weight_of,
 };
 use super::retained::{is_pan, is_total};
 use crate::fault::Fault;
+use crate::fragmentation::Weighting;
 use crate::tables::table::{Table, key};
 
 /// A layout, with the columns that matter.
@@ -37,10 +38,16 @@ pub(super) enum Layout {
         names: Option<usize>,
     },
     /// One line a curve, a column each percent.
-    Percentiles {
-        columns: Vec<(usize, f64)>,
-        unit: Option<SizeUnit>,
-    },
+    Percentiles { columns: Vec<PercentColumn> },
+}
+
+/// A column of sizes that `percent` pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PercentColumn {
+    pub(super) column: usize,
+    pub(super) percent: f64,
+    /// Of sizes without one of their own.
+    pub(super) unit: Option<SizeUnit>,
 }
 
 /// The columns that name a curve, and its weight.
@@ -74,10 +81,29 @@ impl LabelColumns {
             Role::Photo(place) => Some((place, column)),
             _ => None,
         });
-        let weights: Vec<usize> = free()
+        let mut weights: Vec<usize> = free()
             .filter(|(_, role)| *role == Role::Weight)
             .map(|(column, _)| column)
             .collect();
+        let others = match columns.merging {
+            Weighting::Equal => None,
+            Weighting::Area => Some(Weighting::Mass),
+            Weighting::Mass => Some(Weighting::Area),
+        };
+        let all = weights.clone();
+        weights.retain(|column| {
+            let of = weight_of(&table.name(*column));
+            of.is_none() || of != others
+        });
+        if let (None, [], [other, ..]) = (&columns.weight, &weights[..], &all[..]) {
+            let what = format!(
+                "column '{}' is no {}, by which curves are to be merged",
+                table.name(*other),
+                columns.merging.key()
+            );
+            let remedy = "merge them by what it is, or all the same (--merge)";
+            return Err(Fault::at(table.header_line(), what, remedy));
+        }
         let weight = match (named(&columns.weight)?, &weights[..]) {
             (Some(named), _) => Some(named),
             (None, []) => None,
@@ -157,7 +183,7 @@ impl Layout {
             Ok(Self::SizesAsColumns { sizes, unit, .. }) => {
                 unit.is_some() || sizes.iter().filter(|size| with_unit(size)).count() >= 2
             }
-            Ok(Self::Percentiles { columns, .. }) => {
+            Ok(Self::Percentiles { columns }) => {
                 columns.len() >= 3 && !has_all(table, &["x", "y", "z"])
             }
             Err(_) => false,
@@ -412,21 +438,21 @@ impl<'a> Names<'a> {
     }
 
     fn percentiles_of(&self, set: &str) -> Result<Layout, Fault> {
-        let columns = || {
-            self.percentiles
-                .iter()
-                .filter(|(_, column)| column.set == set)
-        };
-        let unit = columns().find_map(|(_, column)| column.unit);
-        let columns: Vec<(usize, f64)> = columns()
-            .map(|(column, percentile)| (*column, percentile.percent))
+        let columns = self.percentiles.iter();
+        let columns = columns.filter(|(_, column)| column.set == set);
+        let columns: Vec<PercentColumn> = columns
+            .map(|(column, percentile)| PercentColumn {
+                column: *column,
+                percent: percentile.percent,
+                unit: percentile.unit,
+            })
             .collect();
-        if let [(one, _)] = columns[..] {
-            let name = self.table.name(one);
+        if let [one] = columns[..] {
+            let name = self.table.name(one.column);
             let what = format!("column '{name}' is a single percentile");
             return Err(self.fault(what, "give two or more, called alike"));
         }
-        Ok(Layout::Percentiles { columns, unit })
+        Ok(Layout::Percentiles { columns })
     }
 
     /// The sets of two percentiles or more, without those of logarithms, by their first columns.

@@ -46,7 +46,7 @@ pub use point_weights::{PointWeights, read_point_weights};
 
 use crate::fault::Fault;
 use crate::files::FileError;
-use crate::fragmentation::DistributionSet;
+use crate::fragmentation::{DistributionSet, Weighting};
 use crate::tables::table::{Table, read_bounded};
 use crate::units::LengthUnit;
 
@@ -73,6 +73,10 @@ pub struct DistributionColumns {
     pub weight: Option<String>,
     /// The unit of sizes, where the table does not state it.
     pub unit: Option<LengthUnit>,
+    /// What curves are to be merged by: of columns of areas and of masses that one is the weight.
+    pub merging: Weighting,
+    /// What each point of a curve counts by, which is read elsewhere ([`read_point_weights`]).
+    pub point_weight: Option<String>,
 }
 
 /// Whether a text, or the beginning of one, is such a table without a doubt. What may as well be a list
@@ -99,6 +103,24 @@ pub fn no_flight_but_sizes() -> Fault {
         "it holds size distributions, not a flight",
         "open it among the size distributions, or give it to 'fragscale psd'",
     )
+}
+
+/// What is said of a table where nobody can name its columns or units by an option of the command: without those.
+pub fn without_options(said: &str) -> String {
+    let said = said.replace(", or by --size-unit", "");
+    let mut text = said.as_str();
+    let mut kept = String::new();
+    while let Some(open) = text.find(" (") {
+        let (before, rest) = text.split_at(open);
+        let close = rest.find(')').map_or(rest.len(), |close| close + 1);
+        kept.push_str(before);
+        let (inside, after) = rest.split_at(close);
+        if !inside.contains("--") {
+            kept.push_str(inside);
+        }
+        text = after;
+    }
+    kept + text
 }
 
 /// Reads size distributions from the text of a table, with what was mended or passed over.

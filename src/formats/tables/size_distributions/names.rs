@@ -1,6 +1,6 @@
 //! What the name of a column says that it holds.
 
-use crate::fragmentation::SieveSeries;
+use crate::fragmentation::{SieveSeries, Weighting};
 use crate::tables::table::{key, split_number};
 use crate::units::LengthUnit;
 
@@ -292,6 +292,16 @@ pub(super) fn weight_factor(name: &str) -> f64 {
         "t" | "tonne" | "tonnes" => 1e3,
         "lb" | "lbs" => 0.453_592_37,
         _ => 1.0,
+    }
+}
+
+/// Whether the name of a column of weights says that they are areas or masses.
+pub(super) fn weight_of(name: &str) -> Option<Weighting> {
+    let all = words(name);
+    let is_area = |word: &String| word.starts_with("area") || word.ends_with(['2', '²']);
+    match all.iter().any(is_area) {
+        true => Some(Weighting::Area),
+        false => says_mass(&all).then_some(Weighting::Mass),
     }
 }
 

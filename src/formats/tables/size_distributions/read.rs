@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::DistributionColumns;
 use super::curves::{RawCurve, RawPoint, Repairs, SizeReading, finish};
-use super::layout::{LabelColumns, Layout};
+use super::layout::{LabelColumns, Layout, PercentColumn};
 use super::names::{
     Role, SizeText, SizeUnit, holds_sieve_numbers, is_amount, role, sample_of, sieve_mm,
     size_trouble, weight_factor,
@@ -80,8 +80,10 @@ pub(super) fn read(
             reading.header = unit;
             reader.sizes_as_columns(&sizes, names)?
         }
-        Layout::Percentiles { columns, unit } => {
-            reading.header = unit;
+        Layout::Percentiles { columns } => {
+            // Each column has its own; one that all have is the table's.
+            let first = columns.first().and_then(|column| column.unit);
+            reading.header = first.filter(|_| columns.iter().all(|column| column.unit == first));
             reading.percentiles = true;
             reader.percentiles(&columns)?
         }
@@ -247,8 +249,11 @@ impl Reader<'_> {
     /// Says which columns nobody looked at.
     fn say_unused(&mut self, used: &[usize]) {
         let header = self.table.header().iter().enumerate();
+        let elsewhere = self.columns.point_weight.as_deref();
+        let elsewhere = elsewhere.and_then(|name| self.table.column(name).ok());
+        let is_used = |column: usize| used.contains(&column) || elsewhere == Some(column);
         let unused: Vec<String> = header
-            .filter(|(column, name)| !name.is_empty() && !used.contains(column))
+            .filter(|(column, name)| !name.is_empty() && !is_used(*column))
             .map(|(_, name)| shown(name))
             .collect();
         if unused.is_empty() {
@@ -509,15 +514,23 @@ impl Reader<'_> {
         })
     }
 
-    fn percentiles(&mut self, columns: &[(usize, f64)]) -> Result<Vec<RawCurve>, Fault> {
-        let taken: Vec<usize> = columns.iter().map(|(column, _)| *column).collect();
+    fn percentiles(&mut self, columns: &[PercentColumn]) -> Result<Vec<RawCurve>, Fault> {
+        let taken: Vec<usize> = columns.iter().map(|of| of.column).collect();
         self.a_line_a_curve(&taken, None, |reader, row| {
             let mut points = Vec::new();
-            for &(column, percent) in columns.iter().take_while(|(column, _)| *column < row.len()) {
+            for &PercentColumn {
+                column,
+                percent,
+                unit,
+            } in columns.iter().take_while(|of| of.column < row.len())
+            {
                 if is_missing(row.cell(column)) {
                     continue;
                 }
-                if let Some(size) = reader.size(row, column)? {
+                if let Some(mut size) = reader.size(row, column)? {
+                    if let Some((_, own)) = &mut size.number {
+                        *own = own.or(unit);
+                    }
                     points.push(RawPoint {
                         line: row.line,
                         size,

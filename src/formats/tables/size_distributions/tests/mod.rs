@@ -503,3 +503,27 @@ proptest! {
         prop_assert_eq!(set.curves[0].distribution.points(), points);
     }
 }
+
+/// 25.4 mm and 2 cm and 0.1 in; where only some say their unit, nobody knows the others'.
+#[test]
+fn each_percentile_has_the_unit_of_its_column() {
+    let (set, said) = read("photo,D10 (in),D50 [cm],D80 mm\na,0.1,2,25.4\n");
+    assert_eq!(set.unit, LengthUnit::Inch);
+    let points = set.curves[0].distribution.points();
+    for (point, wanted) in points
+        .iter()
+        .zip([[0.1, 10.0], [2.0 / 2.54, 50.0], [1.0, 80.0]])
+    {
+        assert!(
+            (point[0] - wanted[0]).abs() < 1e-12 && point[1] == wanted[1],
+            "{points:?}"
+        );
+    }
+    assert!(said.is_empty(), "{said:?}");
+    let (line, text) = fault("photo,D10,D50,D80 (in)\na,1,2,3\n");
+    assert_eq!(line, Some(2));
+    assert!(
+        text.starts_with("this size has no unit, where others have one"),
+        "{text}"
+    );
+}
