@@ -224,7 +224,15 @@ impl State {
 
     /// Whether something would be lost if the program ended now.
     pub(crate) fn asks_before_quitting(&self) -> bool {
-        self.is_changed() || self.work.is_writing() || self.distributions.has_unsaved()
+        self.is_changed()
+            || self.work.is_writing()
+            || self.has_lost_points()
+            || self.distributions.has_unsaved()
+    }
+
+    fn has_lost_points(&self) -> bool {
+        let open = self.open.as_ref();
+        open.is_some_and(|open| open.pointer.picked.is_lost())
     }
 
     /// Leaves the flight on the screen, unless something would be lost: then asks first.
@@ -275,10 +283,15 @@ impl State {
     /// Goes on with what was held back.
     pub(crate) fn go_on(&mut self, held_back: HeldBack) {
         match held_back {
-            HeldBack::Leave(Leaving::Quit) if self.distributions.has_unsaved() => {
+            HeldBack::Leave(leaving) if self.has_lost_points() => {
+                self.held_back = Some(HeldBack::Points(leaving));
+            }
+            HeldBack::Leave(Leaving::Quit) | HeldBack::Points(Leaving::Quit)
+                if self.distributions.has_unsaved() =>
+            {
                 self.held_back = Some(HeldBack::Tables);
             }
-            HeldBack::Leave(leaving) => self.go(leaving),
+            HeldBack::Leave(leaving) | HeldBack::Points(leaving) => self.go(leaving),
             HeldBack::Tables => self.go(Leaving::Quit),
             HeldBack::Replace { command, .. } => self.apply(*command),
         }

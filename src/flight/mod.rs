@@ -117,6 +117,11 @@ impl Default for FlightSettings {
 }
 
 impl FlightSettings {
+    /// What is written beside lengths in the world: its unit, or that nobody states one.
+    pub fn unit_of_lengths(&self) -> &'static str {
+        in_words(self.unit_known.then_some(self.unit))
+    }
+
     /// What was decided of a photo.
     pub fn decision(&self, photo: &str) -> Option<&Decision> {
         self.decisions

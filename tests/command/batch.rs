@@ -360,7 +360,32 @@ fn every_file_is_that_of_the_single_command() {
     let root = root.path();
     with_photos(&root.join("flights/one"), 1);
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
-    fs::copy(sample.join("reference.csv"), root.join("sieve.csv")).expect("a copy");
+    // A belt's photos in the same table, half as coarse again: nothing is held against them.
+    let sieve = fs::read_to_string(sample.join("reference.csv")).expect("a table");
+    let points: Vec<[f64; 2]> = sieve
+        .lines()
+        .filter_map(|line| {
+            let (size, percent) = line.split_once(',')?;
+            Some([size.parse().ok()?, percent.parse().ok()?])
+        })
+        .collect();
+    let rows = |method: &str, factor: f64| -> String {
+        let row = |[size, percent]: &[f64; 2]| format!("{method},{},{percent}\n", size * factor);
+        points.iter().map(row).collect()
+    };
+    let table = format!(
+        "method,size_mm,percent_passing\n{}{}",
+        rows("belt", 1.5),
+        rows("sieve", 1.0)
+    );
+    fs::write(root.join("sieve.csv"), table).expect("written");
+    // What fits the pattern beside the flights, and is none.
+    fs::write(root.join("flights/notes.txt"), "hi\n").expect("written");
+    fs::write(
+        root.join("flights/other.toml"),
+        "format = 1\n[[flight]]\npath = \"one\"\n",
+    )
+    .expect("written");
     let season = "format = 1\nname = \"Trial\"\nto = \"results\"\nunit = \"mm\"\n\
         steps = [\"scales\", \"check\", \"export\", \"scale-map\", \"delineate\", \"psd\"]\n\
         [scale-map]\nlayers = [\"scale\", \"z\"]\n[delineate]\nengine = \"classical\"\nalso = [\"coco\"]\n\
@@ -369,6 +394,10 @@ fn every_file_is_that_of_the_single_command() {
     let output = batch(root, &["season.toml"]);
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(status(&output), 0, "{text}");
+    assert!(
+        text.contains("2 files are no flights: flights/notes.txt, flights/other.toml"),
+        "{text}"
+    );
     let single = |arguments: &[&str]| {
         let output = Command::new(env!("CARGO_BIN_EXE_fragscale"))
             .current_dir(root)
@@ -464,11 +493,21 @@ fn every_file_is_that_of_the_single_command() {
         let size = eighty[key].as_f64().expect("a size");
         assert!((size / cell - 1.0).abs() < 1e-12, "{key}: {size} {cell}");
     }
-    assert!(
-        line["off_reference"]
-            .as_array()
-            .is_some_and(|shifts| !shifts.is_empty())
-    );
+    // How far they are from the sieve, by hand: between two sieves the logarithm of the size goes with the percent.
+    let at = points
+        .iter()
+        .position(|[_, percent]| *percent >= 80.0)
+        .expect("a sieve");
+    let [[s0, p0], [s1, p1]] = [points[at - 1], points[at]];
+    let sieved = s0 * (s1 / s0).powf((80.0 - p0) / (p1 - p0));
+    let shifts = line["off_reference"].as_array().expect("shifts");
+    let shift = shifts
+        .iter()
+        .find(|shift| shift["percent"] == 80.0)
+        .expect("P80");
+    let wanted = 100.0 * (eighty["size"].as_f64().expect("a size") / sieved - 1.0);
+    let off = shift["off_percent"].as_f64().expect("a number");
+    assert!((off - wanted).abs() < 1e-9, "{off} {wanted}");
     let page = fs::read_to_string(root.join("results/season.html")).expect("a page");
     assert!(page.contains("<svg") && page.contains("2026-05-31"));
 }

@@ -369,7 +369,10 @@ fn its_curve_stands_beside_the_sieves() {
     // Once, however often it is taken over.
     let sources = state.distributions.sources();
     assert_eq!(sources.len(), 1);
-    assert_eq!(sources[0].name, "Fragments of IMG_0001.jpg, Lab trial 1 (learned)");
+    assert_eq!(
+        sources[0].name,
+        "Fragments of IMG_0001.jpg, Lab trial 1 (learned)"
+    );
     assert_eq!(
         sources[0].set.curves[0].labels.method,
         "fragscale (learned)"
@@ -395,6 +398,57 @@ fn its_curve_stands_beside_the_sieves() {
     desk.press(Modifiers::COMMAND, Key::Z);
     go(&mut desk, Page::SizeDistributions);
     assert!(!desk.says("have changed since"));
+}
+
+/// A ball that is traced after its photo was outlined counts as no rock from then on, in the window and by the command.
+#[test]
+fn a_scale_object_traced_later_is_taken_off() {
+    let folder = sample();
+    let file = folder.path().join("flight.toml");
+    let mut desk = outlined(&file);
+    let whole = |desk: &Desk| {
+        let measured = outlines(desk).measured().expect("measured");
+        let fragments = measured.photo.fragments.iter();
+        fragments.filter(|of| of.world.is_some()).count()
+    };
+    let before = whole(&desk);
+    desk.press(Modifiers::COMMAND, Key::S);
+    let ring = (0..12).map(|step| {
+        let angle = f64::from(step) * std::f64::consts::TAU / 12.0;
+        let place = BALL + DVec2::from_angle(angle) * 72.0;
+        format!("[{:.1}, {:.1}]", place.x, place.y)
+    });
+    let ring: Vec<String> = ring.collect();
+    let mut text = std::fs::read_to_string(&file).unwrap();
+    text += &format!(
+        "\n[[scale_object]]\nphoto = \"IMG_0001.jpg\"\nkind = \"sphere\"\nsize = 0.06\noutline = [{}]\nmask = true\n",
+        ring.join(", ")
+    );
+    std::fs::write(&file, text).unwrap();
+    let mut desk = Desk::new(Some(&file));
+    desk.click(Role::Tab, "Fragments");
+    assert!(desk.says("what its scale objects cover is outlined as rock, and counts as none"));
+    assert!(whole(&desk) < before, "{} {before}", whole(&desk));
+    assert!(
+        !desk.harness.state().state().is_changed(),
+        "the outlines stay"
+    );
+    let to = folder.path().join("by command");
+    let done = std::process::Command::new(env!("CARGO_BIN_EXE_fragscale"))
+        .args(["delineate", "--engine", "saved"])
+        .args([file.as_path(), "--to".as_ref(), to.as_path()])
+        .output()
+        .unwrap();
+    assert!(done.status.success());
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(
+        said.contains("what its scale objects cover is outlined as rock"),
+        "{said}"
+    );
+    let labels = image::open(to.join("IMG_0001_labels.png"))
+        .unwrap()
+        .into_luma16();
+    assert_eq!(labels.get_pixel(BALL.x as u32, BALL.y as u32).0, [u16::MAX]);
 }
 
 /// What the window writes of outlines that were corrected is what the command writes of the same when they are saved; before

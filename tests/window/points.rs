@@ -81,6 +81,19 @@ fn points_are_picked_copied_and_saved() {
     assert_eq!(desk.selected(), before, "these clicks select nothing");
 }
 
+/// What nobody copied or saved goes with the flight: that is asked.
+#[test]
+fn picked_points_are_asked_about() {
+    let mut desk = picked(Desk::new(Some(&flight("tests/windrow"))));
+    desk.press(Modifiers::COMMAND, Key::W);
+    assert!(desk.says("Picked points are in no file"));
+    desk.click(Role::Button, "Stay here");
+    assert_eq!(names(&desk), ["P1", "P2"]);
+    desk.click(Role::Button, "Copy table");
+    desk.press(Modifiers::COMMAND, Key::W);
+    assert!(desk.harness.state().state().open.is_none());
+}
+
 #[test]
 fn what_is_removed_comes_back() {
     let mut desk = picked(Desk::new(Some(&flight("tests/windrow"))));

@@ -17,6 +17,16 @@ pub enum Measure {
 }
 
 impl Measure {
+    /// What was measured, as it is copied: the distance, its level and its upright part, all digits, with tabs between them.
+    pub fn copied(self) -> Option<String> {
+        let Self::Both(first, second) = self else {
+            return None;
+        };
+        let way = second - first;
+        let (length, level) = (way.length(), way.truncate().length());
+        Some(format!("{length}\t{level}\t{}", way.z))
+    }
+
     /// The points that it has; the mouse is the second until that is clicked.
     pub fn points(self, hover: Option<DVec3>) -> Vec<DVec3> {
         match self {

@@ -10,6 +10,13 @@ pub(super) fn limits_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<C
     let now = state.preferences.limits;
     let mut next = now;
     ui.label("A photo is to check when one of these holds. Change a limit, and all photos are judged anew.");
+    ui.label("They are this window's, for all flights, and are kept on this computer; the command line has the usual ones.");
+    if now != Limits::default() {
+        let text = egui::RichText::new(
+            "⚠ Not the usual limits: 'fragscale scales' and 'check' may judge otherwise.",
+        );
+        ui.label(text.color(ui.visuals().warn_fg_color));
+    }
     ui.add_space(6.0);
     for (value, name, suffix, percent, why) in [
         (

@@ -49,12 +49,15 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
                 measure @ (Measure::Second(_) | Measure::Both(..)) => {
                     if let [a, b] = measure.points(open.pointer.hover)[..] {
                         let way = b - a;
-                        ui.label(format!(
+                        let text = format!(
                             "Distance {:.3} {unit} (level {:.3}, up {:.3})",
                             way.length(),
                             way.truncate().length(),
                             way.z
-                        ));
+                        );
+                        let hover =
+                            "Ctrl+C copies all three with all digits once both points are clicked";
+                        ui.label(text).on_hover_text(hover);
                     } else {
                         ui.label("Distance: click the second point");
                     }

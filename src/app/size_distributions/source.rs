@@ -92,3 +92,40 @@ impl Source {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(flight: &str, photo: usize, method: &str) -> Source {
+        let table = format!("method,size_mm,passing\n{method},1,20\n{method},2,80\n");
+        let columns = crate::formats::DistributionColumns::default();
+        let (set, _) = crate::formats::size_distributions(&table, &columns).unwrap();
+        Source {
+            name: "Fragments of DJI_0001.JPG".to_owned(),
+            path: None,
+            set,
+            warnings: Vec::new(),
+            fragments: Some(OfFragments {
+                flight: PathBuf::from(flight),
+                photo,
+                revision: 0,
+                objects: Vec::new(),
+                unit: LengthUnit::Metre,
+            }),
+        }
+    }
+
+    /// Drones call the first photo of each card alike.
+    #[test]
+    fn photos_of_two_flights_stand_beside_each_other() {
+        let first = of("north/flight.toml", 0, "learned");
+        assert!(of("north/flight.toml", 0, "learned").replaces(&first));
+        assert!(!of("north/flight.toml", 0, "classical").replaces(&first));
+        assert!(!of("north/flight.toml", 1, "learned").replaces(&first));
+        let mut other = of("south/flight.toml", 0, "learned");
+        assert!(!other.replaces(&first));
+        other.set_apart(&[Arc::new(first)]).unwrap();
+        assert_eq!(other.set.curves[0].labels.trial, "south");
+    }
+}

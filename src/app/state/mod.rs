@@ -51,6 +51,8 @@ pub struct LogLine {
 pub enum HeldBack {
     /// Leaving the flight on the screen.
     Leave(Leaving),
+    /// Leaving the flight on the screen, and with it points that were picked.
+    Points(Leaving),
     /// Leaving the program, and with it tables that were pasted.
     Tables,
     /// Writing where there is something already.

@@ -89,6 +89,13 @@ impl State {
                 Err(fault) => Err(FileError::new(&path, fault).to_string()),
             }
         };
-        self.start(Task::SAVE_MEASURED, work, Self::take_written);
+        let of = self.open.as_ref().map(|open| open.number);
+        self.start(Task::SAVE_MEASURED, work, move |state, written| {
+            let open = state.open.as_mut().filter(|open| Some(open.number) == of);
+            if let (Ok(_), Some(open), MeasuredTable::Points) = (&written, open, table) {
+                open.pointer.picked.keep();
+            }
+            state.take_written(written);
+        });
     }
 }

@@ -59,6 +59,16 @@ fn coordinate(number: f64) -> String {
     format!("{number:.3}")
 }
 
+/// A level that is typed again: six decimals, of which those beyond the third are left out where they are 0.
+fn level(number: f64) -> String {
+    let text = format!("{number:.6}");
+    let mut kept = text.as_str();
+    for _ in 0..3 {
+        kept = kept.strip_suffix('0').unwrap_or(kept);
+    }
+    kept.to_owned()
+}
+
 /// A share in percent. What is not all of it is not called 100 %.
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
@@ -88,4 +98,22 @@ pub(crate) fn csv_of(records: impl IntoIterator<Item = Vec<String>>) -> Result<S
     let bytes = writer.into_inner().map_err(|e| e.into_error())?;
     // All that went in was UTF-8.
     Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_has_the_digits_that_it_needs() {
+        for (number, text) in [
+            (-0.002_148, "-0.002148"),
+            (301.25, "301.250"),
+            (0.1 + 0.2, "0.300"),
+            (100.0, "100.000"),
+            (7.0001, "7.0001"),
+        ] {
+            assert_eq!(level(number), text);
+        }
+    }
 }

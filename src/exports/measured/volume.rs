@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::{MeasuredUnit, coordinate, csv_of, percent, rows_of_text};
+use super::{MeasuredUnit, coordinate, csv_of, level, percent, rows_of_text};
 use crate::numbers::significant_digits;
 use crate::survey::{BaseFound, Volume};
 
@@ -24,7 +24,8 @@ impl VolumeReport<'_> {
     pub fn base_in_words(&self) -> String {
         let unit = self.unit.length();
         match self.volume.base {
-            BaseFound::Height(height) => format!("the level at {} {unit}", coordinate(height)),
+            // To the digits that give the same volume when they are typed.
+            BaseFound::Height(height) => format!("the level at {} {unit}", level(height)),
             BaseFound::Rim(plane) => format!(
                 "the plane through the polygon's rim: {} {unit} at its middle, {:.1}° steep, the rim {} {unit} \
                  off it (RMS)",

@@ -27,6 +27,8 @@ pub enum PickStep {
     RemoveAll,
     /// Brings it into the middle of the view, from nearby.
     GoTo(usize),
+    /// The list was copied.
+    Copied,
 }
 
 /// The points that were picked.
@@ -36,6 +38,8 @@ pub struct PickedPoints {
     pub is_on: bool,
     /// The list of now, with those before: what undo goes back over while the tool is taken.
     pub history: History<Vec<PickedPoint>>,
+    /// The list as it was copied or written last.
+    kept: Vec<PickedPoint>,
 }
 
 impl Default for PickedPoints {
@@ -43,6 +47,7 @@ impl Default for PickedPoints {
         Self {
             is_on: false,
             history: History::new(Vec::new()),
+            kept: Vec::new(),
         }
     }
 }
@@ -51,6 +56,16 @@ impl PickedPoints {
     /// The list of now, the first picked first.
     pub fn list(&self) -> &[PickedPoint] {
         self.history.now()
+    }
+
+    /// Whether there are points that nobody copied or wrote.
+    pub fn is_lost(&self) -> bool {
+        !self.list().is_empty() && self.list() != self.kept
+    }
+
+    /// Takes that the list of now was copied or written.
+    pub(crate) fn keep(&mut self) {
+        self.kept = self.list().to_vec();
     }
 
     /// Adds a point: P and the number after the largest that such a name has.
@@ -96,6 +111,7 @@ impl OpenFlight {
                 }
             }),
             PickStep::RemoveAll => picked.change(Vec::clear),
+            PickStep::Copied => picked.keep(),
             PickStep::GoTo(place) => {
                 if let Some(point) = picked.list().get(place).map(|picked| picked.point) {
                     self.fly_to(point);

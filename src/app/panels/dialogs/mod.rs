@@ -141,6 +141,7 @@ fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                 replace(command, there, ui, commands);
             }
             Some(HeldBack::Tables) => pasted_tables(ui, commands),
+            Some(HeldBack::Points(_)) => picked_points(ui, commands),
             _ if state.is_changed() => match &state.open {
                 Some(open)
                     if open.files.origin.is_surface_alone()
@@ -183,11 +184,31 @@ fn pasted_tables(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.label(
         "Size distributions that were pasted go with the window, unless they are saved as a table.",
     );
+    let save = ("Save them as a table…", Asking::SaveTable);
+    save_discard_or_stay(save, ui, commands);
+}
+
+fn picked_points(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.heading("Picked points are in no file");
+    ui.label("Points that were picked go with the flight on the screen, unless they are copied or saved as a table.");
+    let save = (
+        "Save them as a table…",
+        Asking::SaveMeasured(MeasuredTable::Points),
+    );
+    save_discard_or_stay(save, ui, commands);
+}
+
+/// Whoever saves stays, and leaves once more then.
+fn save_discard_or_stay(
+    (save, asking): (&str, Asking),
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
     ui.add_space(8.0);
     ui.horizontal(|ui| {
-        if ui.button("Save them as a table…").clicked() {
+        if ui.button(save).clicked() {
             commands.push(Command::Keep);
-            commands.push(Command::Ask(Some(Asking::SaveTable)));
+            commands.push(Command::Ask(Some(asking)));
         }
         if ui.button("Discard them").clicked() {
             commands.push(Command::Discard);

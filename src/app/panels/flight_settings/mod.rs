@@ -106,7 +106,7 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
         }
         ui.add_enabled_ui(!auto, |ui| {
             let hover = "Elevation of the ground in the world's unit";
-            if let Some(z) = number_field(ui, "Ground elevation", hover, z, now.unit.symbol()) {
+            if let Some(z) = number_field(ui, "Ground elevation", hover, z, now.unit_of_lengths()) {
                 set(FlightSettings {
                     ground: Ground::At(z),
                     ..now.clone()
@@ -196,7 +196,7 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
                 changed = true;
             }
             if let Some(length) = *value
-                && let Some(typed) = number_field(ui, label, hover, length, now.unit.symbol())
+                && let Some(typed) = number_field(ui, label, hover, length, now.unit_of_lengths())
                 && typed > 0.0
             {
                 *value = Some(typed);

@@ -30,7 +30,7 @@ pub(super) fn stated_errors(
     let package = parts.package_errors;
     ui.strong("How sure it is: standard deviations");
     ui.label("What is empty is taken from the package, else it is not counted.");
-    let unit = now.unit.symbol();
+    let unit = now.unit_of_lengths();
     let mut next = now.errors;
     for (place, name, label, unit, hint, hover) in [
         (

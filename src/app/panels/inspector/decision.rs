@@ -40,6 +40,11 @@ pub(super) fn decision(
         info.current_text_value = Some(note.clone());
         info
     });
+    if decided.is_none() && !note.is_empty() {
+        let text = "A note is kept with a decision: accept the photo, or leave it out.";
+        let text = egui::RichText::new(text).color(ui.visuals().warn_fg_color);
+        ui.add(egui::Label::new(text).wrap());
+    }
     let mut decide = |kind: Option<DecisionKind>, ui: &egui::Ui| {
         let decision = kind.map(|kind| (kind, note.clone()));
         commands.push(Command::Decide(photo, decision));

@@ -61,7 +61,7 @@ fn words(state: &State, open: &OpenFlight, linked: &LinkedPoint) -> Vec<String> 
     let selected = open.selected.and_then(|photo| linked.in_photo(photo));
     match selected {
         Some(seen) => words.push(scale(state, open, seen)),
-        None => words.push("hidden from the selected photo".to_owned()),
+        None => words.push("not seen in the selected photo".to_owned()),
     }
     let DVec3 { x, y, z } = linked.point;
     words.push(match linked.is_ten_centimetres {
@@ -139,7 +139,7 @@ pub(crate) fn menu(open: &OpenFlight, response: &egui::Response, commands: &mut 
     });
 }
 
-/// Ctrl+C copies the coordinates under the mouse.
+/// Ctrl+C copies the coordinates under the mouse, or the distance that was measured.
 pub(crate) fn copy(
     open: &OpenFlight,
     ui: &egui::Ui,
@@ -156,7 +156,11 @@ pub(crate) fn copy(
         input.events.contains(&egui::Event::Copy) && !input.modifiers.shift
     };
     if response.hovered() && !ui.ctx().text_edit_focused() && ui.input(asks) {
-        commands.push(Command::Copy(linked.coordinates()));
+        // What was measured last goes before what the mouse is on.
+        let measured = open.pointer.measure.copied();
+        commands.push(Command::Copy(
+            measured.unwrap_or_else(|| linked.coordinates()),
+        ));
     }
 }
 

@@ -54,6 +54,7 @@ fn list(open: &OpenFlight, place: egui::Rect, ui: &mut egui::Ui, commands: &mut 
         let button = ui.add_enabled(is_some, egui::Button::new("Copy table"));
         if button.on_hover_text(hover).clicked() {
             commands.push(Command::Copy(open.picked_table()));
+            commands.push(Command::Pick(PickStep::Copied));
         }
         let button = ui.add_enabled(is_some, egui::Button::new("Save CSV…"));
         if button
@@ -116,5 +117,6 @@ fn copied(open: &OpenFlight, context: &egui::Context, commands: &mut Vec<Command
     let is_some = !open.pointer.picked.list().is_empty();
     if is_some && !context.text_edit_focused() && context.input(asks) {
         commands.push(Command::Copy(open.picked_table()));
+        commands.push(Command::Pick(PickStep::Copied));
     }
 }
