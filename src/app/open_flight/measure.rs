@@ -36,3 +36,15 @@ impl Measure {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_distance_is_copied_with_its_parts() {
+        let measured = Measure::Both(DVec3::new(1.0, 1.0, 2.0), DVec3::new(4.0, 5.0, -10.0));
+        assert_eq!(measured.copied().as_deref(), Some("13\t5\t-12"));
+        assert_eq!(Measure::Second(DVec3::ZERO).copied(), None);
+    }
+}

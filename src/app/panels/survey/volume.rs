@@ -72,6 +72,11 @@ pub(super) fn volume(
     let unit = open.measured_unit();
     let number = |number: f64, unit: &str| format!("{} {unit}", significant_digits(number, 5));
     let (cubic, square) = (unit.volume(), unit.area());
+    if !drawn.finished {
+        // All numbers would grow over the place of the next corner.
+        ui.label(format!("So far {}", number(volume.net(), &cubic)));
+        return;
+    }
     let mut rows = vec![
         ("Fill (above)", number(volume.fill, &cubic)),
         ("Cut (below)", number(volume.cut, &cubic)),
