@@ -84,11 +84,12 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             .default_pos(context.content_rect().center())
             .show(context, |ui| {
                 let wide = matches!(asking, Asking::Georeference | Asking::FromPhotos);
-                ui.set_max_width(match asking {
-                    Asking::Season => season::WIDTH.min(context.content_rect().width() - 40.0),
+                let width = match asking {
+                    Asking::Season => season::WIDTH,
                     _ if wide => 540.0,
                     _ => 460.0,
-                });
+                };
+                ui.set_max_width(width.min(context.content_rect().width() - 40.0));
                 match asking {
                     Asking::Open => open(state, ui, commands),
                     Asking::Add => add(state, ui, commands),
