@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::files::read_text;
+use super::Season;
 use crate::formats::{Candidate, Kind, Package, UNFINISHED, candidates, detect};
 use crate::results::LOCK;
 
@@ -46,13 +46,8 @@ pub(super) fn flights(path: &Path, to: &Path) -> Below {
 
 /// Whether a file is a flight or a reconstruction; a season's own file is none.
 pub(super) fn is_flight_file(path: &Path) -> bool {
-    let is_season = || {
-        let text = read_text(path).unwrap_or_default();
-        let table: Option<toml::Table> = text.parse().ok();
-        table.is_some_and(|table| table.contains_key("flight"))
-    };
     match detect(path) {
-        Ok(Kind::Flight(_)) => !is_season(),
+        Ok(Kind::Flight(_)) => !Season::is_season(path),
         Ok(Kind::Reconstruction(..)) => true,
         _ => false,
     }

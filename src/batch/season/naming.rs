@@ -40,7 +40,8 @@ pub(super) fn name_of(path: &Path) -> String {
 
 /// What a flight is called that was found below a folder: the way to it. So it keeps its name whatever comes beside it.
 pub(super) fn below(root: &Path, flight: &Path) -> String {
-    let inside = flight.strip_prefix(root).unwrap_or(Path::new(""));
+    let inside = meant(flight);
+    let inside = inside.strip_prefix(root).unwrap_or(Path::new(""));
     let mut parts: Vec<String> = inside
         .parent()
         .into_iter()

@@ -257,6 +257,41 @@ fn seasons_name_flights_by_patterns() {
     assert!(error.to_string().contains("2 flights"), "{error}");
 }
 
+/// What fits a pattern beside the flights is passed over and named; flights are called by the way from the part without stars.
+#[test]
+fn patterns_pass_over_what_is_no_flight() {
+    let root = tempfile::tempdir().unwrap();
+    for name in ["north/rep", "south/rep", "east"] {
+        flight_in(&root.path().join(name));
+    }
+    fs::create_dir(root.path().join("empty")).unwrap();
+    fs::write(root.path().join("notes.txt"), "hi").unwrap();
+    let path = root.path().join("SEASON.toml");
+    let found = |pattern: &str| {
+        let text = format!("format = 1\n[[flight]]\npath = \"{pattern}\"\n");
+        fs::write(&path, text).unwrap();
+        let season = Season::read(&path).unwrap();
+        season.flights(&root.path().join("out")).unwrap()
+    };
+    let all = found("*");
+    assert_eq!(names(&all), ["east", "north-rep", "south-rep"]);
+    let at = |name: &str| root.path().join(name).display().to_string();
+    assert_eq!(
+        all.notes,
+        [
+            format!(
+                "2 files are no flights: {}, {}",
+                at("SEASON.toml"),
+                at("notes.txt")
+            ),
+            format!("1 folder holds no flight: {}", at("empty")),
+        ]
+    );
+    assert_eq!(names(&found("*/rep")), ["north-rep", "south-rep"]);
+    assert_eq!(names(&found("*/flight.toml")), ["east"]);
+    assert_eq!(names(&found("*/*/flight.toml")), ["north-rep", "south-rep"]);
+}
+
 /// Found by a pattern and named by itself, a blast counts once, with what is said of it; the season's file may lack one.
 #[test]
 fn a_flight_that_is_named_in_two_ways_is_one() {

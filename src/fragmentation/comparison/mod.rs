@@ -225,6 +225,7 @@ fn against(
     let mut notes = Vec::new();
     notes.extend(partly_known(&curve));
     notes.extend(not_measured(&curve, &shift));
+    notes.extend(not_as_fitted(&curve, reference, &shift));
     if shift.looks_like_scale {
         notes.push(format!(
             "'{method}': all percentiles are shifted by about {:+.1} % (spread {:.1} %), as an image \
@@ -269,6 +270,31 @@ fn not_measured(curve: &MethodCurve, shift: &Shift) -> Option<String> {
              others do",
             curve.method,
             names.join(", ")
+        )
+    })
+}
+
+/// By how many percent a shift of the fitted functions may be off that of what was measured without a word: as far as a good fit is.
+const WELL_FITTED: f64 = 5.0;
+
+/// Where the fitted functions say another shift than what was measured.
+fn not_as_fitted(curve: &MethodCurve, reference: &MethodCurve, shift: &Shift) -> Option<String> {
+    let off = shift.percentiles.iter().filter_map(|of| {
+        let size = curve.measured_size_at(of.percent)?;
+        let measured = 100.0 * (size / reference.measured_size_at(of.percent)? - 1.0);
+        ((measured - of.shift_percent).abs() > WELL_FITTED).then(|| {
+            format!(
+                "P{} {measured:+.1} %, not {:+.1}",
+                of.percent, of.shift_percent
+            )
+        })
+    });
+    let off: Vec<String> = off.collect();
+    (!off.is_empty()).then(|| {
+        format!(
+            "'{}': the shifts are of the fitted functions, which leave what was measured; as measured {}",
+            curve.method,
+            off.join("; ")
         )
     })
 }
@@ -345,6 +371,45 @@ mod tests {
     }
 
     const SIEVE: [f64; 3] = [40.0, 150.0, 2.2];
+
+    /// Of photos that show few fines the function goes past P50, which was measured: that is said with what was measured.
+    #[test]
+    fn what_the_functions_leave_is_said() {
+        let points = [
+            [10.0, 40.0],
+            [20.0, 45.0],
+            [30.0, 52.0],
+            [60.0, 60.0],
+            [100.0, 90.0],
+            [150.0, 100.0],
+        ];
+        let mut photos = curve("photos", "", SIEVE);
+        photos.distribution = SizeDistribution::new(points.to_vec()).expect("a distribution");
+        let sieve = curve("sieve", "", SIEVE);
+        let sieved = sieve.distribution.size_at(50.0).expect("measured");
+        // Between 20 and 30 five of seven percents on, in the logarithm.
+        let wanted = 100.0 * (20.0 * 1.5f64.powf(5.0 / 7.0) / sieved - 1.0);
+        let both = set(vec![photos, sieve]);
+        let found = compare(&both, &ComparisonOptions::new("sieve")).expect("a comparison");
+        let note = found.methods[0]
+            .notes
+            .iter()
+            .find(|note| note.contains("as measured"));
+        let note = note.expect("a note");
+        assert!(
+            note.contains(&format!("P50 {wanted:+.1} %, not ")),
+            "{note} {wanted}"
+        );
+        // The same function measured at its own sieves needs no word.
+        let close = set(vec![curve("cloud", "", SIEVE), curve("sieve", "", SIEVE)]);
+        let found = compare(&close, &ComparisonOptions::new("sieve")).expect("a comparison");
+        assert!(
+            found.methods[0]
+                .notes
+                .iter()
+                .all(|note| !note.contains("as measured"))
+        );
+    }
 
     /// The scale of the cloud is 4 % off, that of the object 8 %: known before anything is fitted.
     #[test]

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::command::{Command, Dialog};
+use crate::command::{Command, Destination, Dialog};
 use crate::panels::path_field::{path_to_write, taken_path};
 use crate::size_distributions::DistributionCommand;
 use crate::state::State;
@@ -44,16 +44,8 @@ pub(in crate::panels) fn save_figure(
     ui.label(
         "The figure for a report: a name that ends in .svg is drawn in lines, .png in pixels.",
     );
-    let browse = [(
-        "Browse…",
-        Dialog::new_file("Save figure", "size-distributions.svg"),
-    )];
-    let start = beside(state, "size-distributions.svg");
-    if let Some(path) = path_to_write(state, ui, &start, &browse, "Write figure", commands) {
-        commands.push(Command::Distributions(DistributionCommand::SaveFigure(
-            path.into(),
-        )));
-    }
+    let asked = ["Save figure", "size-distributions.svg", "Write figure"];
+    where_to(asked, DistributionCommand::SaveFigure, state, ui, commands);
 }
 
 /// Where the report goes.
@@ -63,30 +55,29 @@ pub(in crate::panels) fn save_report(
     commands: &mut Vec<Command>,
 ) {
     ui.label("One HTML page with the figure, all tables and how they were computed.");
-    let browse = [(
-        "Browse…",
-        Dialog::new_file("Save report", "size-distributions.html"),
-    )];
-    let start = beside(state, "size-distributions.html");
-    if let Some(path) = path_to_write(state, ui, &start, &browse, "Write report", commands) {
-        commands.push(Command::Distributions(DistributionCommand::SaveReport(
-            path.into(),
-        )));
-    }
+    let asked = ["Save report", "size-distributions.html", "Write report"];
+    where_to(asked, DistributionCommand::SaveReport, state, ui, commands);
 }
 
 /// Where the table goes.
 pub(in crate::panels) fn save_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.label("All curves with one line a point, as they were read: it can be added again, also to 'fragscale psd'.");
-    let browse = [(
-        "Browse…",
-        Dialog::new_file("Save table", "size-distributions.csv"),
-    )];
-    let start = beside(state, "size-distributions.csv");
-    if let Some(path) = path_to_write(state, ui, &start, &browse, "Write table", commands) {
-        commands.push(Command::Distributions(DistributionCommand::SaveTable(
-            path.into(),
-        )));
+    let asked = ["Save table", "size-distributions.csv", "Write table"];
+    where_to(asked, DistributionCommand::SaveTable, state, ui, commands);
+}
+
+/// The path of what is written: the dialog's title, the usual name, the button.
+fn where_to(
+    [title, usual, button]: [&'static str; 3],
+    command: impl FnOnce(Destination) -> DistributionCommand,
+    state: &State,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    let browse = [("Browse…", Dialog::new_file(title, usual))];
+    let start = beside(state, usual);
+    if let Some(path) = path_to_write(state, ui, &start, &browse, button, commands) {
+        commands.push(Command::Distributions(command(path.into())));
     }
 }
 

@@ -95,14 +95,7 @@ impl RetainedName {
         let percent = says_percent(words);
         let mass = says_mass(words);
         let cumulative = words.iter().any(|word| says_cumulative(word));
-        let each = any(&[
-            "each",
-            "individual",
-            "incremental",
-            "differential",
-            "partial",
-            "parcial",
-        ]);
+        let each = any(&EACH_NAMES);
         match (percent, mass, cumulative) {
             (true, _, true) => Self::CumulativePercent,
             (true, _, false) if each => Self::EachPercent,
@@ -118,6 +111,19 @@ impl RetainedName {
 /// What masses are called; here and below also in German, French and Spanish.
 const MASS_NAMES: [&str; 10] = [
     "mass", "masses", "weight", "weights", "wt", "masse", "gewicht", "poids", "masa", "peso",
+];
+
+/// What percents are called.
+const PERCENT_NAMES: [&str; 4] = ["percent", "pct", "percentage", "prozent"];
+
+/// What says that each sieve's share is meant, not the sum down to it.
+const EACH_NAMES: [&str; 6] = [
+    "each",
+    "individual",
+    "incremental",
+    "differential",
+    "partial",
+    "parcial",
 ];
 
 /// What is within the name of a size of sieves or fragments.
@@ -179,8 +185,9 @@ fn says_mass(words: &[String]) -> bool {
 
 /// Whether words speak of percents.
 fn says_percent(words: &[String]) -> bool {
-    let percents = ["percent", "pct", "percentage", "prozent"];
-    words.iter().any(|word| percents.contains(&word.as_str()))
+    words
+        .iter()
+        .any(|word| PERCENT_NAMES.contains(&word.as_str()))
 }
 
 /// The words of a name in small letters: "PercentPassing", "percent_passing" and "% passing" are the
@@ -298,7 +305,11 @@ pub(super) fn weight_factor(name: &str) -> f64 {
 /// Whether the name of a column of weights says that they are areas or masses.
 pub(super) fn weight_of(name: &str) -> Option<Weighting> {
     let all = words(name);
-    let is_area = |word: &String| word.starts_with("area") || word.ends_with(['2', '²']);
+    let is_square = |word: &str| {
+        let side = word.strip_suffix(['2', '²']).or(word.strip_prefix("sq"));
+        side.is_some_and(|side| SizeUnit::of(side).is_some())
+    };
+    let is_area = |word: &String| word.starts_with("area") || is_square(word);
     match all.iter().any(is_area) {
         true => Some(Weighting::Area),
         false => says_mass(&all).then_some(Weighting::Mass),
@@ -332,24 +343,13 @@ pub(super) fn is_unit_of_amounts(text: &str) -> bool {
 pub(super) fn sample_of(name: &str) -> String {
     let known = |word: &str| {
         let word = key(word);
-        let of_retained = [
-            "percent",
-            "pct",
-            "percentage",
-            "each",
-            "individual",
-            "incremental",
-            "differential",
-            "partial",
-            "parcial",
-            "on",
-            "sieve",
-        ];
+        let of_sieves = ["on", "sieve"];
         word.is_empty()
             || says_cumulative(&word)
-            || RETAINED_NAMES.contains(&word.as_str())
+            || [&RETAINED_NAMES[..], &PERCENT_NAMES, &EACH_NAMES, &of_sieves]
+                .iter()
+                .any(|list| list.contains(&word.as_str()))
             || says_mass(std::slice::from_ref(&word))
-            || of_retained.contains(&word.as_str())
     };
     let separators = |c: char| c.is_whitespace() || matches!(c, '_' | '(' | ')' | '[' | ']' | ',');
     let left = name.split(separators).filter(|word| !known(word));

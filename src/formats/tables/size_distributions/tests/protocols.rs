@@ -387,6 +387,52 @@ fn results_below_and_masses_beside_are_no_points() {
     assert_eq!(set.curves[0].weight, Some(4.0));
 }
 
+/// Of columns of areas and masses that one counts by which curves are to be merged.
+#[test]
+fn curves_weigh_what_they_are_merged_by() {
+    let text = "photo,size_mm,passing,area_m2,mass_kg\na,1,20,2,5\na,2,80,2,5\n";
+    let weight = |merging, text: &str| {
+        let columns = DistributionColumns {
+            merging,
+            ..DistributionColumns::default()
+        };
+        size_distributions(text, &columns).map(|(set, _)| set.curves[0].weight)
+    };
+    assert_eq!(weight(Weighting::Area, text), Ok(Some(2.0)));
+    assert_eq!(weight(Weighting::Mass, text), Ok(Some(5.0)));
+    assert!(
+        weight(Weighting::Equal, text)
+            .unwrap_err()
+            .what
+            .contains("may both be")
+    );
+    let areas = "photo,size_mm,passing,area_m2\na,1,20,2\na,2,80,2\n";
+    let fault = weight(Weighting::Mass, areas).unwrap_err();
+    assert_eq!(
+        fault.what,
+        "column 'area_m2' is no mass, by which curves are to be merged"
+    );
+    let named = areas.replace("area_m2", "weight 2");
+    assert_eq!(weight(Weighting::Mass, &named), Ok(Some(2.0)));
+}
+
+#[test]
+fn options_of_the_command_are_left_out_elsewhere() {
+    for (said, wanted) in [
+        ("name one of them (--weight)", "name one of them"),
+        (
+            "no unit is stated: sizes are taken for mm (state it in the name of their column, or by --size-unit)",
+            "no unit is stated: sizes are taken for mm (state it in the name of their column)",
+        ),
+        (
+            "call it size (or name it by --size), please (now)",
+            "call it size, please (now)",
+        ),
+    ] {
+        assert_eq!(without_options(said), wanted);
+    }
+}
+
 #[test]
 fn laboratories_write_german_french_and_spanish() {
     let wanted = [[10.0, 20.0], [40.0, 80.0]];
