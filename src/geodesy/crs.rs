@@ -175,6 +175,19 @@ impl Crs {
         }
     }
 
+    /// That heights count in another unit than x and y, where they do, in words.
+    pub fn heights_apart(&self) -> Option<String> {
+        let apart = (self.heights_factor() - 1.0).abs() > 1e-9;
+        apart.then(|| {
+            format!(
+                "{} has its heights in units of {} m, x and y in units of {} m",
+                self.name(),
+                self.vertical_unit_metres(),
+                self.unit_metres()
+            )
+        })
+    }
+
     /// What its heights count from, in words: "the ellipsoid", "the geoid EGM96", "not said".
     pub fn heights(&self) -> &str {
         self.definition

@@ -105,6 +105,7 @@ fn mission_info(file: &MissionFile) -> Value {
         })),
         "speed": mission.speed,
         "safe_height": mission.safe_height,
+        "return_height": mission.return_height,
         "finish": mission.finish.in_words(),
         "photos": mission.stops.iter().filter(|stop| stop.photo.is_some()).count(),
         "stops": stops.collect::<Vec<_>>(),

@@ -228,6 +228,20 @@ impl Way {
     }
 }
 
+/// The height in the world from which the drone comes straight home from every photo, rising to it where it is, and keeps the
+/// clearance: never below the safe height of the ways. `None` without a way.
+pub fn return_height(plan: &Plan, ways: &[Way]) -> Option<f64> {
+    let take_off = ways.first()?.take_off.truncate();
+    let clearance = plan.wish.clearance;
+    let over = plan.photos.iter().filter_map(|photo| {
+        let from = photo.pose.center.truncate();
+        let ground = plan.terrain.highest_along(from, take_off, clearance);
+        Some(ground? + clearance)
+    });
+    let safe = ways.iter().map(|way| way.safe_height);
+    Some(over.chain(safe).fold(f64::MIN, f64::max))
+}
+
 /// Who flies the photos of a plan.
 struct Pilot<'a> {
     plan: &'a Plan,

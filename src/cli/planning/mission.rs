@@ -89,6 +89,9 @@ fn told(mission: &Mission, format: &str) -> String {
     if let Some(height) = mission.safe_height {
         let _ = writeln!(text, "climbs to: {height:.2} m above it first");
     }
+    if let Some(height) = mission.return_height {
+        let _ = writeln!(text, "comes home at: {height:.2} m above it");
+    }
     if let Some(speed) = mission.speed {
         let _ = writeln!(text, "speed: {speed} m/s");
     }

@@ -413,7 +413,16 @@ fn crs_of(arguments: &PlanArguments, opened: &Opened) -> Result<Crs, String> {
         let remedy = "say it: --crs EPSG:n; or world.crs in flight.toml";
         in_flight(Fault::new(what, remedy))
     });
-    Crs::understand(stated?).map_err(in_flight)
+    let crs = Crs::understand(stated?).map_err(in_flight)?;
+    // What the surface's own file states of its heights is kept when it is read.
+    match crs.heights_apart().filter(|_| opened.crs.is_none()) {
+        None => Ok(crs),
+        Some(apart) => {
+            let what = format!("{apart}, and all lengths of the surface are taken in one unit");
+            let remedy = "bring its heights to the unit of x and y, and name the system without heights; or give a file that states its system";
+            Err(in_flight(Fault::new(what, remedy)))
+        }
+    }
 }
 
 /// The camera that is to fly, without what its lens bends: plans are for undistorted images.

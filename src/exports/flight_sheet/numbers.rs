@@ -7,7 +7,7 @@ use crate::flight_plan::{PlanReport, kinds_in_words, sun_in_words};
 use crate::geodesy::Crs;
 use crate::measured::percent;
 use crate::numbers::{four_digits, significant_digits};
-use fragscale_core::plan::{Size, Way};
+use fragscale_core::plan::{Size, Way, return_height};
 
 /// Names and what is said of them, in the order of the page.
 #[derive(Default)]
@@ -138,28 +138,13 @@ fn say_ways(report: &PlanReport<'_>, first: &Way, said: &mut Said) {
     }
 }
 
-/// The height above the take-off from which the drone comes straight home from every photo, and keeps the clearance:
-/// never below the safe height of the ways.
-fn return_height(report: &PlanReport<'_>) -> Option<f64> {
-    let (plan, take_off) = (report.plan, report.ways.first()?.take_off);
-    let clearance = plan.wish.clearance;
-    let over = plan.photos.iter().filter_map(|photo| {
-        let from = photo.pose.center.truncate();
-        let ground = plan
-            .terrain
-            .highest_along(from, take_off.truncate(), clearance);
-        Some(ground? + clearance)
-    });
-    let safe = report.ways.iter().map(|way| way.safe_height);
-    Some(over.chain(safe).fold(f64::MIN, f64::max) - take_off.z)
-}
-
-/// The same for people, rounded up to a whole metre, for it is set at the ground station.
+/// The height above the take-off to return home at, for people: rounded up to a whole metre, for it is set at the ground station.
 pub(super) fn return_height_in_words(report: &PlanReport<'_>) -> Option<String> {
     let unit = report.world;
     // A rounding error above a whole metre is that metre.
     let whole = |height: f64| (height - 1e-6).ceil();
-    let height = return_height(report)?;
+    let take_off = report.ways.first()?.take_off;
+    let height = return_height(report.plan, report.ways)? - take_off.z;
     let (rounded, metres) = (whole(height), whole(height * unit.metres()));
     Some(match unit.metres() == 1.0 {
         true => format!("{rounded} m"),

@@ -16,6 +16,7 @@ struct Collection<'a> {
     name: &'a str,
     speed_m_per_s: Option<f64>,
     safe_height_m: Option<f64>,
+    return_height_m: Option<f64>,
     finish: &'static str,
     drone: Option<Drone>,
     features: Vec<Feature<'a>>,
@@ -131,6 +132,7 @@ pub(super) fn bytes(mission: &Mission) -> Result<Vec<u8>, Fault> {
         name: &mission.name,
         speed_m_per_s: mission.speed,
         safe_height_m: mission.safe_height,
+        return_height_m: mission.return_height,
         finish: match mission.finish {
             Finish::ReturnHome => "return home",
             Finish::Hover => "hover",

@@ -45,6 +45,12 @@ pub(super) fn bytes(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec<u8
     if mission.safe_height.is_some() {
         notes.push("Litchi's files have no height to climb to first: the drone flies from where it is to the first waypoint".to_owned());
     }
+    if let Some(height) = mission.return_height {
+        notes.push(format!(
+            "the file does not say how high the drone comes home: set its return-to-home height to {} m or more",
+            height.ceil()
+        ));
+    }
     let mut text = header();
     let speed = mission.speed.unwrap_or(0.0);
     let mut heading = 0.0;

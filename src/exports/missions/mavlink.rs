@@ -89,6 +89,12 @@ pub(super) fn commands(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec
         "the file is for ArduPilot's Copter; PX4 does not take the command that turns (115)"
             .to_owned(),
     );
+    if let Some(height) = mission.return_height {
+        notes.push(format!(
+            "the file does not say how high the drone comes home: set ArduPilot's RTL_ALT to {} m or more",
+            height.ceil()
+        ));
+    }
     let mut commands = Vec::new();
     match mission.safe_height {
         Some(height) => {

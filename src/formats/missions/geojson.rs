@@ -33,6 +33,7 @@ struct Collection {
     name: String,
     speed_m_per_s: Option<f64>,
     safe_height_m: Option<f64>,
+    return_height_m: Option<f64>,
     finish: String,
     drone: Option<Drone>,
     features: Vec<Feature>,
@@ -112,6 +113,7 @@ pub(super) fn read(text: &str) -> Result<MissionFile, Fault> {
         drone,
         speed: file.speed_m_per_s,
         safe_height: file.safe_height_m,
+        return_height: file.return_height_m,
         finish,
         ..Mission::default()
     };

@@ -64,6 +64,13 @@ fn of_file(path: &Path, options: &OpenOptions, progress: &Progress) -> Result<So
                 fault.remedy,
             ))
         })?;
+    let apart = source.named_crs.as_ref().and_then(Crs::heights_apart);
+    let apart = apart.map(|what| {
+        format!(
+            "world.crs: {what}: heights are taken in the unit of x and y, as all lengths of the world, but those whose unit their own file states"
+        )
+    });
+    source.warn(path, apart.as_slice());
     source.inputs.push(path.to_owned());
     let file_in = |name: Option<&str>| name.map(|name| folder.join(name));
     source.surface = source.surface.or(file_in(file.surface()));

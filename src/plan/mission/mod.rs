@@ -36,6 +36,9 @@ pub struct Mission {
     /// Metres above the place of take-off that the drone climbs to before it flies to the first stop;
     /// `None` where it is left to the ground station.
     pub safe_height: Option<f64>,
+    /// Metres above the place of take-off from which the drone comes straight home from every stop over all that stands there;
+    /// `None` where nobody says it.
+    pub return_height: Option<f64>,
     /// What happens behind the last stop.
     pub finish: Finish,
     /// In the order in which they are flown.
@@ -254,9 +257,14 @@ impl Mission {
             let what = format!("the speed is {speed} m/s, not between 0 and {FASTEST}");
             return Err(Fault::new(what, remedy));
         }
-        if let Some(height) = self.safe_height {
-            check_height(Height::above_take_off(height))
-                .map_err(|what| Fault::new(format!("safe height: {what}"), remedy))?;
+        for (name, height) in [
+            ("safe height", self.safe_height),
+            ("height to return home at", self.return_height),
+        ] {
+            if let Some(height) = height {
+                check_height(Height::above_take_off(height))
+                    .map_err(|what| Fault::new(format!("{name}: {what}"), remedy))?;
+            }
         }
         for (stop, number) in self.stops.iter().zip(1..) {
             stop.check()

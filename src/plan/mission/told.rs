@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use super::{DroneCodes, Fence, Finish, Height, Mission, PhotoOf, Stop, TakeOff, heading};
 use crate::fault::Fault;
 use crate::geodesy::{Crs, CrsKind, Geographic};
-use crate::plan::{Plan, Way};
+use crate::plan::{Plan, Way, return_height};
 use crate::units::LengthUnit;
 
 /// Units that differ by less are one: feet and US survey feet differ by 2e-6, metres at UTM's coordinates.
@@ -67,6 +67,8 @@ pub fn missions(
     told: &Told,
 ) -> Result<Vec<(String, Mission)>, Fault> {
     is_over_ground(told.unit, crs)?;
+    // Of all photos: the pilot sets one, whatever battery is flown.
+    let return_height = return_height(plan, ways);
     let numbered = ways.iter().zip(1..).map(|(way, number)| {
         let battery = match ways.len() {
             0 | 1 => String::new(),
@@ -75,7 +77,7 @@ pub fn missions(
         let name = format!("{}{battery}", told.name);
         let mission = mission(
             plan,
-            way,
+            (way, return_height),
             crs,
             Told {
                 name,
@@ -87,7 +89,12 @@ pub fn missions(
     numbered.collect()
 }
 
-fn mission(plan: &Plan, way: &Way, crs: &Crs, told: Told) -> Result<Mission, Fault> {
+fn mission(
+    plan: &Plan,
+    (way, return_height): (&Way, Option<f64>),
+    crs: &Crs,
+    told: Told,
+) -> Result<Mission, Fault> {
     let off = || {
         let what = format!("the plan lies where {} does not hold", crs.name());
         Fault::new(what, "check the coordinate system of the surface")
@@ -133,6 +140,7 @@ fn mission(plan: &Plan, way: &Way, crs: &Crs, told: Told) -> Result<Mission, Fau
         }),
         speed: Some(told.speed),
         safe_height: Some(above(way.safe_height)),
+        return_height: return_height.map(above),
         finish: Finish::ReturnHome,
         stops,
         fences: fences.collect::<Result<_, Fault>>()?,

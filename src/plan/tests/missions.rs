@@ -47,6 +47,32 @@ fn a_mission_is_told_in_degrees() {
     assert!((north - 2.298).abs() < 0.01, "{north}");
 }
 
+/// Between one photo and home stands a bank that no leg crosses: straight home leads over it, with the clearance.
+#[test]
+fn the_way_home_is_over_all_that_stands_there() {
+    let surface = surface(|place| {
+        if place.x > 10.0 && place.y < 0.0 {
+            118.0
+        } else {
+            100.0
+        }
+    });
+    let mut plan = plan(&surface, 20.0, wish(Pattern::Slope));
+    let home = DVec2::new(500_000.0, 5_000_000.0 - 60.0);
+    let way = ways((&plan, &surface), home, None).unwrap();
+    let low = return_height(&plan, &way).unwrap();
+    assert_eq!(low, way[0].safe_height, "nothing higher stands there");
+    let mut beyond = plan.photos[0].clone();
+    beyond.pose.center = DVec3::new(500_100.0, 5_000_000.0 - 60.0, 170.0);
+    plan.photos.push(beyond);
+    let high = return_height(&plan, &way).unwrap();
+    let wanted = 118.0 + plan.wish.clearance;
+    assert!(
+        (wanted..wanted + 0.5).contains(&high) || high == low && low > wanted,
+        "{high} {wanted} {low}"
+    );
+}
+
 /// Over a surface in US survey feet a mission's heights are metres.
 #[test]
 fn a_mission_over_feet_is_told_in_metres() {

@@ -36,6 +36,7 @@ fn mission() -> Mission {
         }),
         speed: Some(3.0),
         safe_height: Some(20.0),
+        return_height: Some(33.0),
         finish: Finish::ReturnHome,
         stops: vec![
             stop(50.0001, 12.34, 37.4, -62.7, Some("P001")),

@@ -106,6 +106,8 @@ fn heights_count_from_the_take_off() {
     assert!(waylines.contains("<wpml:executeHeightMode>relativeToStartPoint</"));
     assert!(waylines.contains("<wpml:executeHeight>-13.9</"));
     assert!(waylines.contains("<wpml:takeOffSecurityHeight>20</"));
+    // Home over all that stands there, also where the radio is lost.
+    assert!(waylines.contains("<wpml:globalRTHHeight>33</"));
     // Latitude first, and above the ellipsoid, which is 31.628 m above the geoid here (NGA's test of EGM96).
     let mut far = mission();
     if let Some(take_off) = &mut far.take_off {

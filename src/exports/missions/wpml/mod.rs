@@ -65,6 +65,8 @@ struct Common<'a> {
     codes: DroneCodes,
     speed: f64,
     safe_height: f64,
+    /// To come home at, where the radio is lost, too.
+    return_height: f64,
     is_relative: bool,
 }
 
@@ -137,6 +139,23 @@ fn common<'a>(mission: &'a Mission, notes: &mut Vec<String>) -> Result<Common<'a
         );
         return Err(lacks(&what, "give another"));
     }
+    let return_height = match mission.return_height {
+        // As the pilot's sheet says it: a whole metre, and none below what is climbed to first.
+        Some(height) => height.max(safe_height).ceil(),
+        None => {
+            notes.push(
+                "nobody says from which height the drone comes straight home over all that stands there: DJI's file has the height to climb to \
+                 first, also for a lost radio; set the return-to-home height at the drone".to_owned(),
+            );
+            safe_height
+        }
+    };
+    if return_height > highest {
+        let what = format!(
+            "a height to return home at of up to {highest} m, and the mission has {return_height}"
+        );
+        return Err(lacks(&what, "take off elsewhere"));
+    }
     let known = DRONES
         .iter()
         .find(|(drone, sub, _)| (*drone, *sub) == (codes.drone, codes.drone_sub));
@@ -164,6 +183,7 @@ fn common<'a>(mission: &'a Mission, notes: &mut Vec<String>) -> Result<Common<'a
         codes,
         speed,
         safe_height,
+        return_height,
         is_relative: has(Above::TakeOff),
     })
 }
@@ -307,7 +327,7 @@ fn config(xml: &mut Xml, common: &Common<'_>, is_flown: bool) {
         }
         let transit = common.speed.min(FASTEST_TRANSIT);
         xml.leaf("wpml:globalTransitionalSpeed", decimal(transit, 3));
-        xml.leaf("wpml:globalRTHHeight", metres(common.safe_height));
+        xml.leaf("wpml:globalRTHHeight", metres(common.return_height));
         xml.element("wpml:droneInfo", |xml| {
             xml.leaf("wpml:droneEnumValue", common.codes.drone);
             xml.leaf("wpml:droneSubEnumValue", common.codes.drone_sub);

@@ -231,6 +231,7 @@ fn of_config(config: Node<'_, '_>, notes: &mut Notes) -> Result<Mission, Fault> 
         }),
         take_off: take_off(config)?,
         safe_height: number(config, "takeOffSecurityHeight")?,
+        return_height: number(config, "globalRTHHeight")?,
         finish,
         ..Mission::default()
     })

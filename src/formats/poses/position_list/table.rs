@@ -10,6 +10,8 @@
 //! - Column names are compared in small letters without blanks, punctuation and what stands in
 //!   brackets; of a name with a slash ("X/Easting") one part has to be known ([`Column::of`]). A
 //!   leading # belongs to no name. Columns of other names are passed over.
+//! - A unit in brackets behind a height beside degrees is brought to metres, which is said. Beside x and y a unit that is not the metre
+//!   is refused: they are in metres, or in what their system counts in, and whether that is it nobody can say here.
 //! - Degrees are decimal. Longitude and latitude go before easting and northing where both are there.
 //! - The coordinate system is that of a comment "# CoordinateSystem: ..." (Metashape) or "# EPSG:n"
 //!   in front of the header, else EPSG:4326 where the columns are longitude and latitude, else not
@@ -23,6 +25,7 @@ use super::geo_file::leave_out_without_height;
 use super::{NamedPosition, PositionList, check_degrees, crs_from_text, is_crs, is_geographic};
 use crate::fault::Fault;
 use crate::text::separated::{Numbers, Separator, unquoted};
+use crate::units::LengthUnit;
 
 /// Reads a table.
 pub(super) fn read(text: &str) -> Result<PositionList, Fault> {
@@ -45,6 +48,7 @@ pub(super) fn read(text: &str) -> Result<PositionList, Fault> {
             }
             match Layout::of(comment.unwrap_or(line)) {
                 Some(found) => {
+                    found.check_units(number)?;
                     list.crs = found.crs(list.crs.take());
                     list.warnings = found.warnings();
                     layout = Some(found);
@@ -100,6 +104,18 @@ fn squeezed(name: &str) -> String {
     let name = name.get(..end).unwrap_or(name);
     let letters = name.chars().filter(|c| c.is_alphanumeric() || *c == '/');
     letters.flat_map(char::to_lowercase).collect()
+}
+
+/// The unit that stands in brackets behind the name of a column; `None` where there is none, or another word.
+fn unit_in_brackets(name: &str) -> Option<LengthUnit> {
+    let (_, behind) = name.split_once(['(', '['])?;
+    let word = behind.split([')', ']']).next()?.trim().to_lowercase();
+    match word.as_str() {
+        "metre" | "metres" | "meter" | "meters" => Some(LengthUnit::Metre),
+        "foot" | "feet" | "'" => Some(LengthUnit::Foot),
+        "usft" | "ftus" | "us ft" | "us feet" | "us survey feet" => Some(LengthUnit::UsSurveyFoot),
+        symbol => symbol.parse().ok(),
+    }
 }
 
 /// What a column holds.
@@ -172,6 +188,8 @@ impl Column {
 struct Layout {
     separator: Separator,
     columns: Vec<Option<Column>>,
+    /// In brackets behind each name.
+    units: Vec<Option<LengthUnit>>,
     is_degrees: bool,
 }
 
@@ -182,13 +200,12 @@ impl Layout {
         let mut layout = Self {
             separator,
             columns: Vec::new(),
+            units: Vec::new(),
             is_degrees: false,
         };
-        layout.columns = separator
-            .split(header)
-            .iter()
-            .map(|field| Column::of(field))
-            .collect();
+        let fields = separator.split(header);
+        layout.columns = fields.iter().map(|field| Column::of(field)).collect();
+        layout.units = fields.iter().map(|field| unit_in_brackets(field)).collect();
         let has = |column| layout.place(column).is_some();
         let in_degrees = has(Column::Longitude) && has(Column::Latitude);
         if !has(Column::Name) || !(in_degrees || has(Column::X) && has(Column::Y)) {
@@ -202,6 +219,33 @@ impl Layout {
         self.columns.iter().position(|&c| c == Some(column))
     }
 
+    /// The unit that the name of a column has behind it.
+    fn unit(&self, column: Column) -> Option<LengthUnit> {
+        *self.units.get(self.place(column)?)?
+    }
+
+    /// Refuses x, y and heights beside them in another unit than the metre.
+    fn check_units(&self, line: u64) -> Result<(), Fault> {
+        let columns = [
+            Column::X,
+            Column::Y,
+            Column::Height,
+            Column::HeightAboveEllipsoid,
+        ];
+        let units = columns.into_iter().filter_map(|column| self.unit(column));
+        let other = units.filter(|unit| *unit != LengthUnit::Metre).next();
+        match other.filter(|_| !self.is_degrees) {
+            None => Ok(()),
+            Some(unit) => Err(Fault::at(
+                line,
+                format!(
+                    "its columns say {unit}, and x, y and heights are read in metres, or in the unit of their coordinate system"
+                ),
+                "bring them to metres; or, where their system counts so, take the unit out of the names and name the system (--crs)",
+            )),
+        }
+    }
+
     /// The coordinate system, where comments stated `stated`.
     fn crs(&self, stated: Option<String>) -> Option<String> {
         stated.or_else(|| self.is_degrees.then(|| "EPSG:4326".to_owned()))
@@ -209,6 +253,13 @@ impl Layout {
 
     fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
+        let heights = [Column::HeightAboveEllipsoid, Column::Height];
+        let unit = heights.into_iter().find_map(|column| self.unit(column));
+        if let Some(unit) = unit.filter(|unit| *unit != LengthUnit::Metre) {
+            warnings.push(format!(
+                "the list's heights are in {unit}, and are brought to metres"
+            ));
+        }
         let above_ellipsoid = self.place(Column::HeightAboveEllipsoid).is_some();
         if above_ellipsoid && self.place(Column::Height).is_some() {
             warnings
@@ -259,7 +310,11 @@ impl Layout {
         };
         let height = [Column::HeightAboveEllipsoid, Column::Height]
             .into_iter()
-            .find_map(|column| Some(number(column, field(column)?)))
+            .find_map(|column| {
+                let to_metres = self.unit(column).map_or(1.0, LengthUnit::metres);
+                let height = number(column, field(column)?);
+                Some(height.map(|height| height * to_metres))
+            })
             .transpose()?;
         let accuracy = |columns: &[Column]| -> Result<Option<f64>, Fault> {
             let found = columns.iter().find_map(|&c| Some(number(c, field(c)?)));

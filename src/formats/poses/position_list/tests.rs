@@ -36,6 +36,27 @@ fn a_table_finds_its_columns_by_name() {
     assert_eq!((&list.crs, list.warnings.len()), (&None, 0));
 }
 
+/// Feet behind x are refused, whatever they would come to; a height beside degrees is in metres.
+#[test]
+fn units_in_the_names_count() {
+    for names in [
+        "photo,x (ft),y (ft),z (ft)",
+        "photo,easting [m],northing [m],height [feet]",
+        "photo,x (mm),y (mm),z (mm)",
+    ] {
+        let what = at(1, positions_from_text(&format!("{names}\na.jpg,1,2,3\n")));
+        assert!(what.starts_with("its columns say "), "{what}");
+    }
+    let list = positions("photo,x (m),y (m),z [m],accuracy (ft)\na.jpg,1,2,3,1\n");
+    assert_eq!(list.positions[0].position, DVec3::new(1.0, 2.0, 3.0));
+    let list = positions("photo,latitude,longitude,altitude (feet)\na.jpg,50,7,1000\n");
+    assert_eq!(list.positions[0].position, DVec3::new(7.0, 50.0, 304.8));
+    assert_eq!(
+        list.warnings[0],
+        "the list's heights are in ft, and are brought to metres"
+    );
+}
+
 #[test]
 fn decimal_commas_and_byte_order_marks_of_spreadsheets() {
     let text = "Name;Longitude;Latitude;Height\r\n1;16,5;47,25;460,125\r\n";
