@@ -232,8 +232,8 @@ impl Layout {
             Column::Height,
             Column::HeightAboveEllipsoid,
         ];
-        let units = columns.into_iter().filter_map(|column| self.unit(column));
-        let other = units.filter(|unit| *unit != LengthUnit::Metre).next();
+        let mut units = columns.into_iter().filter_map(|column| self.unit(column));
+        let other = units.find(|unit| *unit != LengthUnit::Metre);
         match other.filter(|_| !self.is_degrees) {
             None => Ok(()),
             Some(unit) => Err(Fault::at(
