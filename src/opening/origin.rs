@@ -58,6 +58,11 @@ impl FlightOrigin {
         self.is_surface
     }
 
+    /// Whether it is such a cloud or mesh, and in no flight's file either.
+    pub fn is_surface_in_no_flight(&self) -> bool {
+        self.is_surface && !self.is_flight_file
+    }
+
     /// Where to save it, if nobody says otherwise: in the flight.toml that it came from, or beside the
     /// reconstruction as NAME.toml.
     pub fn suggested_file(&self) -> PathBuf {

@@ -65,7 +65,7 @@ pub use sun::{Shadows, Sun};
 pub use terrain::{GroundPlane, Terrain, ground_at};
 pub use way::{
     Flying, MOST_SPEED, Pace, USUAL_CLIMB, USUAL_DESCENT, USUAL_SETTLE, USUAL_SPEED, Way, WayPoint,
-    return_height,
+    return_height, set_height,
 };
 pub use wish::{
     AskedPlan, Edit, PhotoAt, Size, SurveyWish, USUAL_CLEARANCE, USUAL_OFF_NORMAL,

@@ -242,6 +242,11 @@ pub fn return_height(plan: &Plan, ways: &[Way]) -> Option<f64> {
     Some(over.chain(safe).fold(f64::MIN, f64::max))
 }
 
+/// A height to come home at as it is set at a drone: rounded up to a whole unit. A rounding error above a whole one is that one.
+pub fn set_height(height: f64) -> f64 {
+    (height - 1e-6).ceil()
+}
+
 /// Who flies the photos of a plan.
 struct Pilot<'a> {
     plan: &'a Plan,

@@ -319,7 +319,7 @@ impl OpenFlight {
     /// Whether something would be lost if it were closed.
     pub fn is_changed(&self) -> bool {
         // Of a cloud in no flight's file nothing is kept but the plan over it, which may be in a mission.
-        if self.files.origin.is_surface_alone() && self.files.origin.flight_file().is_none() {
+        if self.files.origin.is_surface_in_no_flight() {
             return self.planning.is_lost();
         }
         self.settings_to_save() != self.files.saved

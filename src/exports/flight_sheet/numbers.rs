@@ -7,7 +7,7 @@ use crate::flight_plan::{PlanReport, kinds_in_words, sun_in_words};
 use crate::geodesy::Crs;
 use crate::measured::percent;
 use crate::numbers::{four_digits, significant_digits};
-use fragscale_core::plan::{Size, Way, return_height};
+use fragscale_core::plan::{Size, Way, return_height, set_height};
 
 /// Names and what is said of them, in the order of the page.
 #[derive(Default)]
@@ -141,11 +141,9 @@ fn say_ways(report: &PlanReport<'_>, first: &Way, said: &mut Said) {
 /// The height above the take-off to return home at, for people: rounded up to a whole metre, for it is set at the ground station.
 pub(super) fn return_height_in_words(report: &PlanReport<'_>) -> Option<String> {
     let unit = report.world;
-    // A rounding error above a whole metre is that metre.
-    let whole = |height: f64| (height - 1e-6).ceil();
     let take_off = report.ways.first()?.take_off;
     let height = return_height(report.plan, report.ways)? - take_off.z;
-    let (rounded, metres) = (whole(height), whole(height * unit.metres()));
+    let (rounded, metres) = (set_height(height), set_height(height * unit.metres()));
     Some(match unit.metres() == 1.0 {
         true => format!("{rounded} m"),
         false => format!("{rounded} {unit} ({metres} m)"),

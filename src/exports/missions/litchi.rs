@@ -9,7 +9,7 @@
 
 use std::fmt::Write;
 
-use fragscale_core::plan::{Above, Finish, Mission, Stop};
+use fragscale_core::plan::{Above, Finish, Mission, Stop, set_height};
 
 use super::heights::metres_above;
 use super::{angle, decimal, degrees, metres};
@@ -48,7 +48,7 @@ pub(super) fn bytes(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec<u8
     if let Some(height) = mission.return_height {
         notes.push(format!(
             "the file does not say how high the drone comes home: set its return-to-home height to {} m or more",
-            height.ceil()
+            set_height(height)
         ));
     }
     let mut text = header();

@@ -9,7 +9,7 @@
 //! - Heights above take-off are of frame 3: they count from where the drone armed, not from the first
 //!   stop.
 
-use fragscale_core::plan::{Above, Finish, Height, Mission, Stop, TakeOff};
+use fragscale_core::plan::{Above, Finish, Height, Mission, Stop, TakeOff, set_height};
 
 use super::heights::metres_above;
 use crate::fault::Fault;
@@ -92,7 +92,7 @@ pub(super) fn commands(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec
     if let Some(height) = mission.return_height {
         notes.push(format!(
             "the file does not say how high the drone comes home: set ArduPilot's RTL_ALT to {} m or more",
-            height.ceil()
+            set_height(height)
         ));
     }
     let mut commands = Vec::new();

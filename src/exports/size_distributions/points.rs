@@ -1,6 +1,7 @@
 //! Size distributions as a table with one line a point, as `fragscale psd` and the window read them.
 
 use crate::fragmentation::{DistributionSet, LabelledDistribution};
+use crate::measured::csv_of;
 
 /// The curves of several sets, their sizes in the first one's unit. Weights are areas in square metres or masses in kilograms, as they
 /// were read, or what their input gave without a unit.
@@ -23,8 +24,7 @@ pub fn points_of_curves_csv(sets: &[&DistributionSet]) -> Result<String, csv::Er
     let mut heads = vec!["method", "trial", "photo", &size, "percent_passing"];
     let weighed = curves().any(|curve| curve.weight.is_some());
     heads.extend(weighed.then_some("weight"));
-    let mut table = csv::Writer::from_writer(Vec::new());
-    table.write_record(heads)?;
+    let mut rows = vec![heads.into_iter().map(str::to_owned).collect()];
     for set in sets {
         let factor = set.unit.in_units_of(unit);
         for curve in &set.curves {
@@ -36,15 +36,11 @@ pub fn points_of_curves_csv(sets: &[&DistributionSet]) -> Result<String, csv::Er
                     .weight
                     .map_or_else(String::new, |weight| weight.to_string());
                 let cells = names.into_iter().cloned().chain(numbers);
-                table.write_record(cells.chain(weighed.then_some(weight)))?;
+                rows.push(cells.chain(weighed.then_some(weight)).collect());
             }
         }
     }
-    let bytes = table
-        .into_inner()
-        .map_err(csv::IntoInnerError::into_error)?;
-    // Of strings alone.
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    csv_of(rows)
 }
 
 #[cfg(test)]

@@ -339,6 +339,11 @@ fn units_and_heights() {
         (crs.vertical_unit_metres(), crs.heights()),
         (1.0, "the geoid EGM96")
     );
+    assert_eq!(crs.heights_apart(), None);
+    let feet = Crs::understand("EPSG:32633+6360").unwrap().heights_apart();
+    let feet = feet.unwrap();
+    assert!(feet.contains("heights in units of 0.30480060"), "{feet}");
+    assert!(feet.ends_with("x and y in units of 1 m"), "{feet}");
     assert_eq!(Crs::understand("ECEF").unwrap().heights(), "the ellipsoid");
     assert_eq!(
         Crs::understand("EPSG:4979").unwrap().heights(),

@@ -144,10 +144,7 @@ fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Some(HeldBack::Tables) => pasted_tables(ui, commands),
             Some(HeldBack::Points(_)) => picked_points(ui, commands),
             _ if state.is_changed() => match &state.open {
-                Some(open)
-                    if open.files.origin.is_surface_alone()
-                        && open.files.origin.flight_file().is_none() =>
-                {
+                Some(open) if open.files.origin.is_surface_in_no_flight() => {
                     plan_alone(ui, commands);
                 }
                 _ => unsaved(state, ui, commands),

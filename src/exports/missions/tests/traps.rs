@@ -377,3 +377,37 @@ fn a_mission_without_stops_is_refused() {
         );
     }
 }
+
+/// Each ground station is told, or the pilot, from which height the drone comes straight home: whole metres as on the pilot's sheet.
+#[test]
+fn the_height_to_come_home_at_is_told() {
+    let home = |return_height, safe_height| {
+        let mission = Mission {
+            return_height,
+            safe_height: Some(safe_height),
+            ..mission()
+        };
+        let waylines = unzipped(file(&mission, MissionFormat::DjiWpml), "wpmz/waylines.wpml");
+        let (_, behind) = waylines.split_once("<wpml:globalRTHHeight>").unwrap();
+        behind.split('<').next().unwrap().to_owned()
+    };
+    assert_eq!(home(Some(22.1), 20.0), "23");
+    // Not a metre more for a rounding error; never below what is climbed to first.
+    assert_eq!(home(Some(33.0 + 1e-12), 20.0), "33");
+    assert_eq!(home(Some(12.0), 20.5), "21");
+    // Nobody says it: the height to climb to is there, and that is said.
+    assert_eq!(home(None, 20.5), "20.5");
+    let unsaid = Mission {
+        return_height: None,
+        ..mission()
+    };
+    assert!(notes(&unsaid, MissionFormat::DjiWpml).contains("nobody says from which height"));
+    assert!(!notes(&mission(), MissionFormat::DjiWpml).contains("nobody says from which height"));
+    for format in [MissionFormat::Waypoints, MissionFormat::QGroundControl] {
+        assert!(notes(&mission(), format).contains("RTL_ALT to 33 m or more"));
+    }
+    assert!(
+        notes(&mission(), MissionFormat::Litchi).contains("return-to-home height to 33 m or more")
+    );
+    assert!(!notes(&unsaid, MissionFormat::Litchi).contains("return-to-home"));
+}

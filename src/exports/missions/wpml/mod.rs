@@ -16,7 +16,7 @@ use std::io::{Cursor, Write};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use fragscale_core::plan::{Above, DroneCodes, Finish, Mission};
+use fragscale_core::plan::{Above, DroneCodes, Finish, Mission, set_height};
 
 use self::stop::{Placed, actions, heading, point, position, suffix};
 use super::format::no_drone;
@@ -141,7 +141,7 @@ fn common<'a>(mission: &'a Mission, notes: &mut Vec<String>) -> Result<Common<'a
     }
     let return_height = match mission.return_height {
         // As the pilot's sheet says it: a whole metre, and none below what is climbed to first.
-        Some(height) => height.max(safe_height).ceil(),
+        Some(height) => set_height(height.max(safe_height)),
         None => {
             notes.push(
                 "nobody says from which height the drone comes straight home over all that stands there: DJI's file has the height to climb to \
