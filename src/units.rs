@@ -31,6 +31,9 @@ impl LengthUnit {
         Self::UsSurveyFoot,
     ];
 
+    /// Those of the metre.
+    pub const METRIC: [Self; 3] = [Self::Millimetre, Self::Centimetre, Self::Metre];
+
     /// Its length in metres.
     pub fn metres(self) -> f64 {
         match self {

@@ -4,6 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::fault::Fault;
+use crate::formats::FileError;
+use crate::geodesy::Crs;
 use crate::jobs::Progress;
 use crate::opening::{
     self, FlightOfMission, Memory, OpenOptions, Opened, half_of_the_machines, memory_size,
@@ -69,6 +72,25 @@ impl FlightArguments {
             flight: &opened.flight,
             crs: opened.crs.as_deref(),
         }
+    }
+
+    /// The coordinate system of the places: the one `stated`, else the opened flight's. `remedy` is for where there is none.
+    pub(super) fn crs_of(
+        &self,
+        stated: Option<&str>,
+        opened: &Opened,
+        remedy: &str,
+    ) -> Result<Crs, String> {
+        let stated = stated.or(opened.crs.as_deref()).ok_or_else(|| {
+            let what = "nobody says in which coordinate system its places are";
+            self.wrong(Fault::new(what, remedy))
+        });
+        Crs::understand(stated?).map_err(|fault| self.wrong(fault))
+    }
+
+    /// What is wrong with it, in a line.
+    pub(super) fn wrong(&self, fault: Fault) -> String {
+        FileError::new(&self.flight, fault).to_string()
     }
 
     fn open_with(&self, may_lack_photos: bool, progress: &Progress) -> Result<Opened, String> {

@@ -10,6 +10,7 @@ use super::definition::{Definition, utm_code};
 use super::proj_text::ProjText;
 use super::{Geographic, ecef_from_geographic, enu_axes, geographic_from_ecef};
 use crate::fault::Fault;
+use crate::units::LengthUnit;
 
 /// How far, in units of the system, going there and back may be off before the projection is not
 /// believed.
@@ -155,6 +156,14 @@ impl Crs {
         match self.kind {
             CrsKind::Geographic => 1.0,
             CrsKind::Projected | CrsKind::Geocentric => self.unit_metres,
+        }
+    }
+
+    /// The unit of the x and y of a map, where it is one that lengths are given in; degrees are none, and geocentric systems are no maps.
+    pub fn unit(&self) -> Option<LengthUnit> {
+        match self.kind {
+            CrsKind::Projected => LengthUnit::of_metres(self.unit_metres),
+            CrsKind::Geographic | CrsKind::Geocentric => None,
         }
     }
 

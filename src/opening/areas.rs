@@ -73,7 +73,10 @@ impl Areas {
     }
 
     /// As polygons in the world, with what was mended. `what` they are is in front of what is wrong ("area").
-    fn in_world(
+    ///
+    /// # Errors
+    /// Where one is no polygon, or lies where the coordinate system does not hold; where that is not known.
+    pub fn in_world(
         self,
         what: &str,
         crs: impl FnOnce() -> Result<Crs, String>,
@@ -115,7 +118,7 @@ impl Areas {
         {
             let count = areas.polygons.len();
             let several = format!("it holds {count} polygons, where one is needed");
-            let remedy = "save the one alone, and make a plan of each";
+            let remedy = "save the one alone";
             return Err(FileError::new(path, Fault::new(several, remedy)).to_string());
         }
         let (mut polygons, said) = self.in_world(what, crs)?;

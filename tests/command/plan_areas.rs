@@ -135,3 +135,58 @@ fn areas_are_read_from_maps() {
     );
     told(&["--area", AREA, "--keep-out", &two]);
 }
+
+/// A volume in a polygon of a map is that in the same polygon in the world; of two it is asked which.
+#[test]
+fn volumes_are_measured_in_polygons_of_maps() {
+    let folder = tempfile::tempdir().unwrap();
+    let flight = plane(folder.path());
+    let corners = ON_EARTH.map(|[longitude, latitude]| format!("[{longitude},{latitude}]"));
+    let rings = format!("[[{},{}]]", corners.join(","), corners[0]);
+    let write = |name: &str, text: String| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    let one = write(
+        "one.geojson",
+        format!("{{\"type\": \"Polygon\", \"coordinates\": {rings}}}"),
+    );
+    let two = write(
+        "two.geojson",
+        format!("{{\"type\": \"MultiPolygon\", \"coordinates\": [{rings}, {rings}]}}"),
+    );
+    let volume = |flight: &str, polygon: &str| {
+        let base = ["--base", "200", "--format", "json"];
+        fragscale(&[&["volume", flight, "--polygon", polygon][..], &base].concat())
+    };
+    let fill = |polygon: &str| -> f64 {
+        let output = volume(&flight, polygon);
+        let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+        told["fill"].as_f64().unwrap()
+    };
+    // 80 m x 80 m, and 300 m less half of the way to the middle, over 200 m.
+    assert!((fill(AREA) - 6400.0 * 50.0).abs() < 1e-3);
+    assert!((fill(&one) / fill(AREA) - 1.0).abs() < 1e-4);
+    let error = |output: std::process::Output| {
+        assert_eq!(output.status.code(), Some(1));
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let said = error(volume(&flight, &two));
+    assert!(
+        said.contains("it holds 2 polygons, where one is needed"),
+        "{said}"
+    );
+    // A cloud says nothing of the Earth.
+    let cloud = folder.path().join("plane.xyz").display().to_string();
+    let said = error(volume(&cloud, &one));
+    assert!(
+        said.contains("nobody says in which coordinate system"),
+        "{said}"
+    );
+    // The map takes both at once.
+    let map = folder.path().join("map.svg").display().to_string();
+    let output = fragscale(&["map", &flight, "-o", &map, "--polygon", &two]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+}

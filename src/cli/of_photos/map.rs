@@ -7,6 +7,7 @@ use glam::DVec2;
 
 use super::length::Length;
 use crate::cli::flight_arguments::FlightArguments;
+use crate::cli::on_surface::places::ON_EARTH_REMEDY;
 use crate::cli::outputs::{Force, Outputs};
 use crate::cli::{Answer, OutputUnit};
 use crate::exports::{MeasuredOutline, Plan, PlanFormat, PlanGround, PlanRequest, taken_in_words};
@@ -16,8 +17,8 @@ use crate::flight::{Limits, Review};
 use crate::formats::FileError;
 use crate::formats::photos::photo_metadata;
 use crate::jobs::Progress;
-use crate::opening::places;
-use crate::survey::{Polygon, SurveyError};
+use crate::opening::{Areas, places};
+use crate::survey::SurveyError;
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct MapArguments {
@@ -42,7 +43,7 @@ pub(in crate::cli) struct MapArguments {
     /// takes and writes them. Can be given several times.
     #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
     line: Vec<String>,
-    /// The same of a polygon, as 'volume' takes them.
+    /// The same of a polygon, as 'volume' takes them; of a file of a map all that it holds.
     #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
     polygon: Vec<String>,
     #[command(flatten)]
@@ -73,13 +74,23 @@ pub(in crate::cli) fn map(arguments: &MapArguments, progress: &Progress) -> Resu
     let output = &arguments.output;
     let at_output = |fault| FileError::new(output, fault).to_string();
     let format = PlanFormat::of(output).map_err(at_output)?;
-    let (measured, mended) = measured(arguments)?;
+    let (mut measured, mut warnings) = lines(arguments)?;
+    let polygons = arguments.polygon.iter().map(|text| Areas::read(text));
+    let polygons: Vec<Areas> = polygons.collect::<Result<_, String>>()?;
     let outputs = Outputs::new(arguments.force, arguments.flight.files());
     let mut outputs = outputs.and(output, Kind::Result)?;
     let opened = arguments.flight.open(progress)?;
     outputs.read(&opened.read)?;
-    let path = &arguments.flight.flight;
-    let in_flight = |fault| FileError::new(path, fault).to_string();
+    for areas in polygons {
+        let crs = || arguments.flight.crs_of(None, &opened, ON_EARTH_REMEDY);
+        let (polygons, mended) = areas.in_world("--polygon", crs)?;
+        measured.extend(polygons.iter().map(|polygon| MeasuredOutline {
+            points: polygon.corners().to_vec(),
+            is_polygon: true,
+        }));
+        warnings.extend(mended);
+    }
+    let in_flight = |fault| arguments.flight.wrong(fault);
     let parts = opened.flight.parts();
     if arguments.pixel.is_some() && !parts.unit_known {
         let what = "the model is in a frame of its own, whose unit nobody states";
@@ -121,37 +132,27 @@ pub(in crate::cli) fn map(arguments: &MapArguments, progress: &Progress) -> Resu
         .map_err(at_output)?;
     outputs.write(output, &bytes, Kind::Result)?;
     let text = format!("{}: {}\n", output.display(), format.words(&plan));
-    let mut warnings = mended;
     warnings.extend(opened.all_warnings());
     warnings.extend(plan.warnings);
     Ok(Answer::new(text, warnings))
 }
 
-/// The lines and polygons that are asked for, with what was mended of their files.
-fn measured(arguments: &MapArguments) -> Result<(Vec<MeasuredOutline>, Vec<String>), String> {
-    let (mut outlines, mut warnings) = (Vec::new(), Vec::new());
-    for (all, is_polygon) in [(&arguments.line, false), (&arguments.polygon, true)] {
-        for text in all {
-            let (points, mended) = places(text)?;
-            let outline = MeasuredOutline { points, is_polygon };
-            check(&outline).map_err(|error| format!("{}: {error}", option(&outline)))?;
-            outlines.push(outline);
-            warnings.extend(mended);
+/// The lines that are asked for, with what was mended of their files.
+fn lines(arguments: &MapArguments) -> Result<(Vec<MeasuredOutline>, Vec<String>), String> {
+    let (mut lines, mut warnings) = (Vec::new(), Vec::new());
+    for text in &arguments.line {
+        let (points, mended) = places(text)?;
+        // What could not be measured is not drawn as measured either.
+        if points.iter().all(|place| *place == points[0]) {
+            return Err(format!("--line: {}", SurveyError::NoLength));
         }
+        warnings.extend(mended);
+        lines.push(MeasuredOutline {
+            points,
+            is_polygon: false,
+        });
     }
-    Ok((outlines, warnings))
-}
-
-/// What could not be measured is not drawn as measured either.
-fn check(outline: &MeasuredOutline) -> Result<(), SurveyError> {
-    let places = &outline.points;
-    if outline.is_polygon {
-        return Polygon::new(places).map(|_| ());
-    }
-    match places.iter().any(|place| *place != places[0]) {
-        true => Ok(()),
-        false => Err(SurveyError::NoLength),
-    }
+    Ok((lines, warnings))
 }
 
 /// A line in other coordinates than the flight's would be on no page, and nobody would know.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::places::ON_EARTH_REMEDY;
 use crate::cli::Answer;
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::outputs::AnswerArguments;
@@ -11,15 +12,14 @@ use crate::exports::{self, MeasuredUnit, VolumeReport};
 use crate::fault::Fault;
 use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::opening::places;
-use crate::opening::{StatedWorld, second_surface};
-use crate::survey::{self, Base, Polygon};
+use crate::opening::{Areas, StatedWorld, second_surface};
+use crate::survey::{self, Base};
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct VolumeArguments {
     #[command(flatten)]
     flight: FlightArguments,
-    /// The polygon's corners in the world, or a file with one a line.
+    /// The polygon's corners in the world, or a file with one a line; or a polygon of a map, as GeoJSON or KML.
     #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
     polygon: String,
     /// What the volume is over: an elevation; "rim", the plane that is nearest to the surface along the
@@ -62,10 +62,11 @@ pub(in crate::cli) fn volume(
     };
     let inputs = arguments.flight.files().chain(base_file);
     let mut outputs = arguments.answer.outputs(inputs)?;
-    let (corners, mut warnings) = places(&arguments.polygon)?;
-    let polygon = Polygon::new(&corners).map_err(|error| format!("polygon: {error}"))?;
+    let polygon = Areas::read(&arguments.polygon)?;
     let opened = arguments.flight.open_to_measure(progress)?;
     outputs.read(&opened.read)?;
+    let crs = || arguments.flight.crs_of(None, &opened, ON_EARTH_REMEDY);
+    let (polygon, mut warnings) = polygon.one_in_world("polygon", crs)?;
     let other = match base_file {
         Some(path) => {
             let parts = opened.flight.parts();

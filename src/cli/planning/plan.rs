@@ -246,7 +246,7 @@ pub(in crate::cli) fn plan(
         mut warnings,
     } = planned;
     let parts = opened.flight.parts();
-    let in_flight = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
+    let in_flight = |fault: Fault| arguments.flight.wrong(fault);
     let flying = arguments.flying.flying();
     let missions = match arguments.mission.is_empty() || ways.is_empty() {
         true => Vec::new(),
@@ -319,7 +319,7 @@ fn planned(
     (area, keep_out): (Option<Areas>, Vec<Areas>),
     progress: &Progress,
 ) -> Result<Planned, String> {
-    let in_flight = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
+    let in_flight = |fault: Fault| arguments.flight.wrong(fault);
     let parts = opened.flight.parts();
     if let Some(gimbal) = arguments.gimbal.filter(|gimbal| gimbal.x > gimbal.y) {
         return Err(format!(
@@ -327,13 +327,15 @@ fn planned(
             gimbal.x, gimbal.y
         ));
     }
-    let unit = arguments.unit.or(parts.unit_known.then_some(parts.unit));
-    let Some(unit) = unit else {
+    let crs = || crs_of(arguments, opened);
+    let known = parts.unit_known.then_some(parts.unit);
+    // Nobody says a unit of a cloud alone but its system.
+    let of_crs = || crs().ok().and_then(|crs| crs.unit());
+    let Some(unit) = arguments.unit.or(known).or_else(of_crs) else {
         let what = "nobody says in which unit its coordinates are";
         let remedy = "say it: --unit m; or world.unit in flight.toml";
         return Err(in_flight(Fault::new(what, remedy)));
     };
-    let crs = || crs_of(arguments, opened);
     // Of a system that is none is told where it is needed.
     if let Ok(crs) = crs() {
         plan::is_over_ground(unit, &crs).map_err(in_flight)?;
@@ -406,21 +408,15 @@ fn planned(
 
 /// The coordinate system of the places.
 fn crs_of(arguments: &PlanArguments, opened: &Opened) -> Result<Crs, String> {
-    let in_flight = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
-    let stated = arguments.crs.as_deref().or(opened.crs.as_deref());
-    let stated = stated.ok_or_else(|| {
-        let what = "nobody says in which coordinate system its places are";
-        let remedy = "say it: --crs EPSG:n; or world.crs in flight.toml";
-        in_flight(Fault::new(what, remedy))
-    });
-    let crs = Crs::understand(stated?).map_err(in_flight)?;
+    let remedy = "say it: --crs EPSG:n; or world.crs in flight.toml";
+    let crs = (arguments.flight).crs_of(arguments.crs.as_deref(), opened, remedy)?;
     // What the surface's own file states of its heights is kept when it is read.
     match crs.heights_apart().filter(|_| opened.crs.is_none()) {
         None => Ok(crs),
         Some(apart) => {
             let what = format!("{apart}, and all lengths of the surface are taken in one unit");
             let remedy = "bring its heights to the unit of x and y, and name the system without heights; or give a file that states its system";
-            Err(in_flight(Fault::new(what, remedy)))
+            Err(arguments.flight.wrong(Fault::new(what, remedy)))
         }
     }
 }
@@ -444,7 +440,7 @@ fn camera(arguments: &PlanArguments, opened: &Opened) -> Result<Camera, String> 
                 "it has no camera",
                 "say which is to fly: --drone NAME or --camera FILE",
             );
-            FileError::new(&arguments.flight.flight, fault).to_string()
+            arguments.flight.wrong(fault)
         })
 }
 

@@ -267,24 +267,35 @@ impl Shape {
     }
 }
 
+/// How WKT of a coordinate system begins, in small letters.
+const WKT: [&str; 6] = [
+    "projcs[",
+    "projcrs[",
+    "geogcs[",
+    "geogcrs[",
+    "compd_cs[",
+    "compoundcrs[",
+];
+
 /// Whether a line names a coordinate system as OpenDroneMap's lists do: "EPSG:4326", a PROJ string,
 /// "WGS84 UTM 17N", or WKT.
 fn is_crs(line: &str) -> bool {
     let line = line.trim().to_ascii_lowercase();
     let epsg = line.strip_prefix("epsg:");
-    epsg.is_some_and(|code| code.trim().parse::<u32>().is_ok())
+    // With a code of the heights behind a plus, too.
+    let codes = |text: &str| text.split('+').all(|code| code.trim().parse::<u32>().is_ok());
+    epsg.is_some_and(codes)
         || line.starts_with("+proj")
         || line.starts_with("wgs84 utm")
-        || ["projcs[", "projcrs[", "geogcs[", "geogcrs[", "compd_cs["]
-            .iter()
-            .any(|start| line.starts_with(start))
+        || WKT.iter().any(|start| line.starts_with(start))
 }
 
 /// Whether positions in that system are degrees. Where it is not known, no.
 fn is_geographic(crs: Option<&str>) -> bool {
     crs.is_some_and(|crs| {
         let crs = crs.to_ascii_lowercase();
-        matches!(crs.as_str(), "epsg:4326" | "epsg:4979" | "epsg:4258")
+        let level = crs.split('+').next().unwrap_or_default().trim();
+        matches!(level, "epsg:4326" | "epsg:4979" | "epsg:4258")
             || crs.contains("+proj=longlat")
             || crs.contains("+proj=latlong")
             || crs.starts_with("geogc")

@@ -10,7 +10,7 @@
 //! - Column names are compared in small letters without blanks, punctuation and what stands in
 //!   brackets; of a name with a slash ("X/Easting") one part has to be known ([`Column::of`]). A
 //!   leading # belongs to no name. Columns of other names are passed over.
-//! - A unit in brackets behind a height beside degrees is brought to metres, which is said. Beside x and y a unit that is not the metre
+//! - A unit in brackets behind a height beside degrees, or behind an accuracy, is brought to metres, which is said. Beside x and y a unit that is not the metre
 //!   is refused: they are in metres, or in what their system counts in, and whether that is it nobody can say here.
 //! - Degrees are decimal. Longitude and latitude go before easting and northing where both are there.
 //! - The coordinate system is that of a comment "# CoordinateSystem: ..." (Metashape) or "# EPSG:n"
@@ -224,6 +224,18 @@ impl Layout {
         *self.units.get(self.place(column)?)?
     }
 
+    /// The unit of the first column of accuracies that says one.
+    fn unit_of_accuracies(&self) -> Option<LengthUnit> {
+        let columns = [
+            Column::Accuracy,
+            Column::AccuracyHorizontal,
+            Column::AccuracyEast,
+            Column::AccuracyNorth,
+            Column::AccuracyUp,
+        ];
+        columns.into_iter().find_map(|column| self.unit(column))
+    }
+
     /// Refuses x, y and heights beside them in another unit than the metre.
     fn check_units(&self, line: u64) -> Result<(), Fault> {
         let columns = [
@@ -234,7 +246,13 @@ impl Layout {
         ];
         let mut units = columns.into_iter().filter_map(|column| self.unit(column));
         let other = units.find(|unit| *unit != LengthUnit::Metre);
-        match other.filter(|_| !self.is_degrees) {
+        // Feet behind an accuracy say that x may be in feet, too; millimetres do not: surveyors count so beside metres.
+        let of_accuracies = || {
+            let unit = self.unit_of_accuracies()?;
+            let is_metric = LengthUnit::METRIC.contains(&unit);
+            (self.unit(Column::X).is_none() && !is_metric).then_some(unit)
+        };
+        match other.or_else(of_accuracies).filter(|_| !self.is_degrees) {
             None => Ok(()),
             Some(unit) => Err(Fault::at(
                 line,
@@ -254,11 +272,17 @@ impl Layout {
     fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         let heights = [Column::HeightAboveEllipsoid, Column::Height];
-        let unit = heights.into_iter().find_map(|column| self.unit(column));
-        if let Some(unit) = unit.filter(|unit| *unit != LengthUnit::Metre) {
-            warnings.push(format!(
-                "the list's heights are in {unit}, and are brought to metres"
-            ));
+        let of_heights = heights.into_iter().find_map(|column| self.unit(column));
+        let units = [
+            ("heights", of_heights),
+            ("accuracies", self.unit_of_accuracies()),
+        ];
+        for (what, unit) in units {
+            if let Some(unit) = unit.filter(|unit| *unit != LengthUnit::Metre) {
+                warnings.push(format!(
+                    "the list's {what} are in {unit}, and are brought to metres"
+                ));
+            }
         }
         let above_ellipsoid = self.place(Column::HeightAboveEllipsoid).is_some();
         if above_ellipsoid && self.place(Column::Height).is_some() {
@@ -317,7 +341,11 @@ impl Layout {
             })
             .transpose()?;
         let accuracy = |columns: &[Column]| -> Result<Option<f64>, Fault> {
-            let found = columns.iter().find_map(|&c| Some(number(c, field(c)?)));
+            let found = columns.iter().find_map(|&column| {
+                let to_metres = self.unit(column).map_or(1.0, LengthUnit::metres);
+                let accuracy = number(column, field(column)?);
+                Some(accuracy.map(|accuracy| accuracy * to_metres))
+            });
             Ok(found.transpose()?.filter(|&accuracy| accuracy > 0.0))
         };
         let horizontal = [Column::AccuracyHorizontal, Column::Accuracy];

@@ -47,8 +47,24 @@ fn units_in_the_names_count() {
         let what = at(1, positions_from_text(&format!("{names}\na.jpg,1,2,3\n")));
         assert!(what.starts_with("its columns say "), "{what}");
     }
+    // An accuracy has its own: a foot is not taken for a metre, nor 15 mm for 15 m.
     let list = positions("photo,x (m),y (m),z [m],accuracy (ft)\na.jpg,1,2,3,1\n");
     assert_eq!(list.positions[0].position, DVec3::new(1.0, 2.0, 3.0));
+    assert_eq!(list.positions[0].accuracy, Some(DVec3::splat(0.3048)));
+    assert_eq!(
+        list.warnings,
+        ["the list's accuracies are in ft, and are brought to metres"]
+    );
+    let list = positions("photo,x,y,z,accuracy xy (mm),accuracy z (mm)\na.jpg,1,2,3,15,30\n");
+    assert_eq!(
+        list.positions[0].accuracy,
+        Some(DVec3::new(0.015, 0.015, 0.03))
+    );
+    let what = at(
+        1,
+        positions_from_text("photo,x,y,z,accuracy (ft)\na.jpg,1,2,3,1\n"),
+    );
+    assert!(what.starts_with("its columns say ft"), "{what}");
     let list = positions("photo,latitude,longitude,altitude (feet)\na.jpg,50,7,1000\n");
     assert_eq!(list.positions[0].position, DVec3::new(7.0, 50.0, 304.8));
     assert_eq!(
