@@ -180,6 +180,10 @@ fn control_points_with_and_without_names() {
     let tabs = points("EPSG:2180\n4\t5\t6\t7\t8\t\tmy photo.jpg\tgcp 1\n");
     assert_eq!(tabs.list.points[0].name, "gcp 1");
     assert_eq!(tabs.list.points[0].marks[0].0, "my photo.jpg");
+    let heights = points("EPSG:32632+5773\n4 5 6 7 8 a.jpg\n");
+    assert_eq!(heights.list.crs.as_deref(), Some("EPSG:32632+5773"));
+    let degrees = control_points_from_text("EPSG:4326+5773\n200 5 6 7 8 a.jpg\n").unwrap_err();
+    assert_eq!(degrees.line, Some(2), "{degrees}");
     let moved = points("EPSG:2180\n1 2 3 4 5 a.jpg p\n1 2 5 4 5 b.jpg p\n1 2 9 4 5 b.jpg q\n");
     assert!(moved.warnings[0].contains("'p' stands at places 2 apart"));
     assert!(moved.warnings[1].contains("'p' and 'q' have the same x and y"));
