@@ -4,9 +4,8 @@
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
-use super::ScalesFormat;
 use crate::exports::write_missions;
 use crate::fault::Fault;
 use crate::files::{self, Inputs, Kind};
@@ -41,12 +40,19 @@ impl OutputArguments {
     }
 }
 
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum AnswerFormat {
+    Table,
+    Csv,
+    Json,
+}
+
 /// How and where the answer of a command goes that is a table for people, CSV or JSON.
 #[derive(Debug, Clone, Args)]
 pub(super) struct AnswerArguments {
     /// How to write it; without it as the output's name ends, else as a table.
     #[arg(long, value_enum)]
-    format: Option<ScalesFormat>,
+    format: Option<AnswerFormat>,
     #[command(flatten)]
     output: OutputArguments,
 }
@@ -72,13 +78,13 @@ impl AnswerArguments {
     }
 
     /// The chosen format, or what the file's name says: a table in a .csv is a table that no program reads.
-    fn format(&self) -> ScalesFormat {
+    fn format(&self) -> AnswerFormat {
         let file = self.output.output.as_deref();
         let ending = file.and_then(Path::extension).unwrap_or_default();
         let by_name = match ending.to_string_lossy().to_lowercase().as_str() {
-            "csv" => ScalesFormat::Csv,
-            "json" => ScalesFormat::Json,
-            _ => ScalesFormat::Table,
+            "csv" => AnswerFormat::Csv,
+            "json" => AnswerFormat::Json,
+            _ => AnswerFormat::Table,
         };
         self.format.unwrap_or(by_name)
     }
@@ -92,9 +98,9 @@ impl AnswerArguments {
         json: fn(&T) -> Result<String, J>,
     ) -> Result<String, String> {
         match self.format() {
-            ScalesFormat::Table => Ok(table(report)),
-            ScalesFormat::Csv => csv(report).map_err(|e| e.to_string()),
-            ScalesFormat::Json => json(report).map_err(|e| e.to_string()),
+            AnswerFormat::Table => Ok(table(report)),
+            AnswerFormat::Csv => csv(report).map_err(|e| e.to_string()),
+            AnswerFormat::Json => json(report).map_err(|e| e.to_string()),
         }
     }
 
@@ -108,7 +114,7 @@ impl AnswerArguments {
         json: fn(&T) -> Result<String, J>,
     ) -> Result<String, String> {
         let left = outputs.deliver(self.text(report, table, csv, json)?)?;
-        let is_table = matches!(self.format(), ScalesFormat::Table);
+        let is_table = matches!(self.format(), AnswerFormat::Table);
         Ok(match outputs.has_file() && !is_table {
             true => table(report),
             false => left,

@@ -10,7 +10,8 @@ use crate::batch::{
     FlightDone, FlightTold, Record, SaidLine, Step, remove_unfinished_below, remove_what_is_left,
 };
 use crate::cli::flight_arguments::FlightArguments;
-use crate::cli::{fail, interrupt, print, review_of_scales};
+use crate::cli::scales::review_of_scales;
+use crate::cli::{fail, interrupt, print};
 use crate::exports::{FlightFindings, VerdictCounts};
 use crate::files::{self, Recording};
 use crate::flight::{Date, Review};

@@ -283,7 +283,10 @@ fn is_crs(line: &str) -> bool {
     let line = line.trim().to_ascii_lowercase();
     let epsg = line.strip_prefix("epsg:");
     // With a code of the heights behind a plus, too.
-    let codes = |text: &str| text.split('+').all(|code| code.trim().parse::<u32>().is_ok());
+    let codes = |text: &str| {
+        text.split('+')
+            .all(|code| code.trim().parse::<u32>().is_ok())
+    };
     epsg.is_some_and(codes)
         || line.starts_with("+proj")
         || line.starts_with("wgs84 utm")

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-use super::OutputUnit;
-use super::outputs::AnswerArguments;
+use crate::cli::OutputUnit;
+use crate::cli::outputs::AnswerArguments;
 use crate::formats::{DistributionColumns, FileError, read_size_distributions};
 use crate::fragmentation::{DistributionSet, Model, Weighting};
 

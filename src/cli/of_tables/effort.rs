@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::Answer;
-use super::outputs::AnswerArguments;
+use crate::cli::Answer;
+use crate::cli::outputs::AnswerArguments;
 use crate::exports;
 use crate::formats::read_effort_table;
 
 #[derive(Debug, Args)]
-pub(super) struct EffortArguments {
+pub(in crate::cli) struct EffortArguments {
     /// A table as CSV: columns step, method or trial, and time; or the steps first and a column of
     /// times for each method or trial. Times are in minutes (others as "90 s", "0:01:30" or by the
     /// column's name, "time_s").
@@ -19,7 +19,7 @@ pub(super) struct EffortArguments {
     answer: AnswerArguments,
 }
 
-pub(super) fn effort(arguments: &EffortArguments) -> Result<Answer, String> {
+pub(in crate::cli) fn effort(arguments: &EffortArguments) -> Result<Answer, String> {
     let outputs = arguments.answer.outputs([&arguments.file])?;
     let (effort, warnings) = read_effort_table(&arguments.file).map_err(|e| e.to_string())?;
     let text = arguments.answer.text(

@@ -5,15 +5,15 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::Answer;
-use super::outputs::AnswerArguments;
+use crate::cli::Answer;
+use crate::cli::outputs::AnswerArguments;
 use crate::exports::{self, AnovaReport};
 use crate::fault::Fault;
 use crate::formats::{FileError, read_grouped_values};
 use crate::fragmentation::{Anova, SIGNIFICANCE};
 
 #[derive(Debug, Args)]
-pub(super) struct AnovaArguments {
+pub(in crate::cli) struct AnovaArguments {
     /// A table as CSV with one value a line.
     #[arg(required_unless_present = "between")]
     file: Option<PathBuf>,
@@ -53,7 +53,7 @@ fn published(text: &str) -> Result<(usize, f64), String> {
     read.ok_or_else(|| "give degrees of freedom and sum of squares, such as 9,1.9".to_owned())
 }
 
-pub(super) fn anova(arguments: &AnovaArguments) -> Result<Answer, String> {
+pub(in crate::cli) fn anova(arguments: &AnovaArguments) -> Result<Answer, String> {
     let outputs = arguments.answer.outputs(&arguments.file)?;
     let (report, warnings) = report(arguments)?;
     let text = arguments.answer.text(

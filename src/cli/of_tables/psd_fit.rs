@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::Answer;
 use super::distribution_arguments::{ColumnArguments, FittingArguments};
-use super::written_beside::{drawn_figures, figure_formats, write_all};
+use crate::cli::Answer;
+use crate::cli::written_beside::{drawn_figures, figure_formats, write_all};
 use crate::exports::{self, FitReport, FittedCurve, FittedDistribution};
 use crate::fault::Fault;
 use crate::files::Kind;

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-use super::Answer;
 use super::distribution_arguments::{DistributionArguments, FittingArguments};
-use super::written_beside::{check_report_name, drawn_figures, figure_formats, write_all};
+use crate::cli::Answer;
+use crate::cli::written_beside::{check_report_name, drawn_figures, figure_formats, write_all};
 use crate::exports::{self, ComparisonReport};
 use crate::files::Kind;
 use crate::fragmentation::{
@@ -78,7 +78,7 @@ pub(super) fn compare(arguments: &CompareArguments, progress: &Progress) -> Resu
 }
 
 /// The same, with the reference that all were held against, and the unit of its sizes.
-pub(super) fn compare_with(
+pub(in crate::cli) fn compare_with(
     arguments: &CompareArguments,
     progress: &Progress,
 ) -> Result<(Answer, (MethodCurve, LengthUnit)), String> {
