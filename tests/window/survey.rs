@@ -133,9 +133,35 @@ fn a_volume_is_drawn_and_measured() {
     let copied = desk.copied().expect("a table");
     assert_eq!(copied.lines().count(), 5, "{copied}");
     assert!(copied.starts_with("x,y\n"), "{copied}");
-    // Measuring puts it away.
+    // Measuring puts it away; it is there again with its tool, and the numbers.
+    let corners = |desk: &Desk| {
+        desk.open()
+            .pointer
+            .drawn
+            .as_ref()
+            .map(|drawn| drawn.points.len())
+    };
     desk.press(Modifiers::NONE, Key::M);
-    assert!(desk.open().pointer.drawn.is_none());
+    assert_eq!(corners(&desk), None);
+    desk.press(Modifiers::NONE, Key::V);
+    assert_eq!(corners(&desk), Some(4));
+    assert!(desk.says("Fill (above)"));
+    // A click begins anew; who did not mean that takes it back, as each corner.
+    for (x, y) in [(-0.2, -0.2), (0.1, -0.2)] {
+        click(&mut desk, on_windrow(x, y));
+    }
+    assert_eq!(corners(&desk), Some(2));
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(corners(&desk), Some(1));
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(corners(&desk), Some(4));
+    let drawn = desk.open().pointer.drawn.as_ref().expect("a tool");
+    assert!(drawn.finished && drawn.volume().is_some());
+    // One that is not finished goes with its tool.
+    click(&mut desk, on_windrow(-0.2, -0.2));
+    desk.press(Modifiers::NONE, Key::Escape);
+    desk.press(Modifiers::NONE, Key::V);
+    assert_eq!(corners(&desk), Some(0));
 }
 
 /// The same surface half a unit lower: as much volume as half of the area, over the file as over a level.

@@ -2,8 +2,9 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, SHIFT, beside_photos, keys, on_plan, with_flight};
+use super::{Action, SHIFT, beside_photos, keys, on_pile, on_plan, with_flight};
 use crate::command::{Choice, Command};
+use crate::open_flight::survey::{Drawn, SurveyStep};
 use crate::size_distributions::{DistributionCommand, Page};
 use crate::state::history::History;
 
@@ -11,7 +12,7 @@ actions! {
     UNDO {
         label: "Undo",
         hover: "Undo the last change: of the flight's settings and photos to export, of the points while they \
-                are picked, of the clipping box while its window is shown, or of the size distributions on their page",
+                are picked or drawn, of the clipping box while its window is shown, or of the size distributions on their page",
         shortcut: keys(Modifiers::COMMAND, Key::Z),
         command: |state| {
             if state.page == Page::SizeDistributions {
@@ -25,6 +26,10 @@ actions! {
             let open = state.open.as_ref()?;
             if state.page == Page::Fragments {
                 return open.can_undo_fragments()[0].then_some(Command::Undo);
+            }
+            let drawn = open.pointer.drawn.as_ref();
+            if drawn.is_some_and(Drawn::is_in_hand) {
+                return on_pile(state, Command::Survey(SurveyStep::RemoveLast));
             }
             let picked = &open.pointer.picked;
             let can = open.history.can_undo()

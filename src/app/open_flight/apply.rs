@@ -75,7 +75,7 @@ impl OpenFlight {
             }
             Command::View(change) => self.change_view(change),
             Command::ToggleMeasure => {
-                self.pointer.drawn = None;
+                self.put_drawing_away();
                 self.pointer.picked.is_on = false;
                 self.pointer.measure = if self.pointer.measure == Measure::Off {
                     Measure::First

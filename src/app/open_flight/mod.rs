@@ -129,6 +129,8 @@ pub struct Pointer {
     pub measure: Measure,
     /// What is drawn on the surface to measure there.
     pub drawn: Option<Drawn>,
+    /// What was finished with tools that are put away, one of each.
+    pub put_away: Vec<Drawn>,
     /// A second surface that volumes can be over.
     pub second: Option<SecondBase>,
     /// Points that were picked on the surface.

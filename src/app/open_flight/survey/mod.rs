@@ -76,6 +76,8 @@ pub struct Drawn {
     pub measured: Option<Result<Measured, String>>,
     /// What was asked last.
     asked: Option<(Vec<DVec2>, BaseChoice)>,
+    /// The finished one that this was begun over: it is back when this one's last point is taken back.
+    before: Option<Box<Self>>,
 }
 
 impl Drawn {
@@ -87,7 +89,13 @@ impl Drawn {
             base,
             measured: None,
             asked: None,
+            before: None,
         }
+    }
+
+    /// Whether its last point can be taken back as a change of one's mind: it is being drawn.
+    pub fn is_in_hand(&self) -> bool {
+        !self.finished && !self.points.is_empty()
     }
 
     /// Its points, the mouse the last of them while it is drawn.
@@ -137,14 +145,24 @@ impl OpenFlight {
             (SurveyStep::Toggle(tool), before) => {
                 let same = before.as_ref().is_some_and(|drawn| drawn.tool == tool);
                 let base = before.map_or_else(BaseChoice::default, |drawn| drawn.base);
-                *drawn = (!same).then(|| Drawn::new(tool, base));
+                self.put_drawing_away();
+                if !same {
+                    let of_tool = |drawn: &Drawn| drawn.tool == tool;
+                    let place = self.pointer.put_away.iter().position(of_tool);
+                    let kept = place.map(|place| self.pointer.put_away.swap_remove(place));
+                    self.pointer.drawn = Some(kept.unwrap_or_else(|| Drawn::new(tool, base)));
+                }
                 self.pointer.measure = super::Measure::Off;
                 self.pointer.picked.is_on = false;
             }
-            (SurveyStep::Leave, _) => *drawn = None,
+            (SurveyStep::Leave, _) => self.put_drawing_away(),
             (SurveyStep::RemoveLast, Some(drawn)) => {
                 drawn.points.pop();
                 drawn.finished = false;
+                if let (true, Some(before)) = (drawn.points.is_empty(), drawn.before.take()) {
+                    *drawn = *before;
+                    drawn.asked = None;
+                }
             }
             (SurveyStep::Finish, Some(drawn)) => {
                 drawn.finished = drawn.points.len() >= drawn.least();
@@ -158,11 +176,29 @@ impl OpenFlight {
         self.ask_surveyor();
     }
 
+    /// Another tool is taken: what was finished is there again when its own is.
+    pub(crate) fn put_drawing_away(&mut self) {
+        let Some(mut drawn) = self.pointer.drawn.take().filter(|drawn| drawn.finished) else {
+            return;
+        };
+        // The surface may be another one by then.
+        drawn.asked = None;
+        self.pointer
+            .put_away
+            .retain(|other| other.tool != drawn.tool);
+        self.pointer.put_away.push(drawn);
+    }
+
     /// Adds a point to what is drawn.
     pub(crate) fn draw_at(&mut self, point: DVec3) {
         if let Some(drawn) = &mut self.pointer.drawn {
             if drawn.finished {
-                *drawn = Drawn::new(drawn.tool, drawn.base);
+                let new = Drawn::new(drawn.tool, drawn.base);
+                let before = std::mem::replace(drawn, new);
+                drawn.before = Some(Box::new(Drawn {
+                    before: None,
+                    ..before
+                }));
             }
             // A double click ends the drawing where its first click put a point.
             if drawn.points.last() != Some(&point) {

@@ -92,7 +92,7 @@ impl OpenFlight {
                 picked.is_on ^= true;
                 if picked.is_on {
                     self.pointer.measure = Measure::Off;
-                    self.pointer.drawn = None;
+                    self.put_drawing_away();
                 }
             }
             PickStep::Rename(place, name) => {
