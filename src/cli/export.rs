@@ -133,7 +133,7 @@ pub(super) fn export_of(
     let report = ScaleReport::new(&review, unit).of_photos(&selected);
     let mut warnings = opened.all_warnings();
     warnings.extend(summary.warnings.iter().cloned());
-    warnings.extend(super::notes_of(&report));
+    warnings.extend(super::scales::notes_of(&report));
     let answer = Answer {
         text: format!("{}: {summary}\n", arguments.to.display()),
         warnings,

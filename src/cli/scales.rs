@@ -24,8 +24,15 @@ pub(super) struct ScalesArguments {
     answer: AnswerArguments,
 }
 
+impl ScalesArguments {
+    /// Where they go.
+    pub(super) fn outputs(&self) -> Result<Outputs<'_>, String> {
+        self.answer.outputs(self.flight.files())
+    }
+}
+
 pub(super) fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, String> {
-    let mut outputs = arguments.answer.outputs(arguments.flight.files())?;
+    let mut outputs = arguments.outputs()?;
     let (flight, memory) = (&arguments.flight, &arguments.memory);
     let (opened, (text, notes)) = memory.with_flight(flight, false, progress, |opened| {
         outputs.read(&opened.read)?;
@@ -94,7 +101,7 @@ fn answer_of_scales(
 }
 
 /// What fell back or failed.
-fn notes_of(report: &exports::ScaleReport<'_>) -> impl Iterator<Item = String> {
+pub(super) fn notes_of(report: &exports::ScaleReport<'_>) -> impl Iterator<Item = String> {
     report.noted().into_iter().map(|noted| {
         let verdict = if noted.has_scale { "" } else { "no scale: " };
         format!("{}: {verdict}{}", noted.whose, noted.notes)

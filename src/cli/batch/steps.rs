@@ -190,7 +190,7 @@ pub(super) fn make(
                 if made.review.is_none() {
                     made.review = Some(review_of_scales(flight, opened, progress)?);
                 }
-                let outputs = arguments.answer.outputs(arguments.flight.files())?;
+                let outputs = arguments.outputs()?;
                 if let Some(review) = &made.review {
                     made.warnings = deliver_scales(&arguments, outputs, opened, review)?.warnings;
                 }

@@ -17,7 +17,7 @@ use crate::jobs::Progress;
 use crate::units::LengthUnit;
 
 #[derive(Debug, Args)]
-pub(super) struct CompareArguments {
+pub(in crate::cli) struct CompareArguments {
     #[command(flatten)]
     table: DistributionArguments,
     /// The method that the others are held against. Without it, the one called sieve, sieving,

@@ -15,7 +15,7 @@ use crate::fragmentation::{FitOptions, LabelledDistribution, fit_each};
 use crate::jobs::Progress;
 
 #[derive(Debug, Args)]
-pub(super) struct FitArguments {
+pub(in crate::cli) struct FitArguments {
     /// A table of cumulative percent passing by size, as CSV.
     file: PathBuf,
     #[command(flatten)]
