@@ -228,6 +228,7 @@ fn undo_knows_what_outlined() {
         )));
     desk.click(Role::Button, "Outline anew");
     assert_eq!(outlines(&desk).by().engine, "classical");
+    assert!(desk.says("Outlined by"));
     assert!(sizes(&desk).0 != learned.0);
     desk.press(Modifiers::COMMAND, Key::Z);
     assert_eq!(outlines(&desk).by().engine, "learned");

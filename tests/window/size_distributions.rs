@@ -369,6 +369,7 @@ fn a_bad_table_is_refused_in_one_line() {
     paste(&mut desk, "size\tpassing\n1\t10\n2\t35\n4\t80\n");
     desk.click(Role::Button, "Add table");
     assert_eq!(computed(&desk).analysis.photos.curves.len(), 1);
+    assert!(desk.harness.state().state().notice.is_none());
 }
 
 /// What was pasted goes with the window: that is asked, and a table keeps it.

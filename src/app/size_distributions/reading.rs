@@ -8,7 +8,7 @@ use super::{Page, PasteForm, ResultTab};
 use crate::command::Command;
 use crate::formats::{self, DistributionColumns, Kind, without_options};
 use crate::jobs::Progress;
-use crate::state::{Severity, State};
+use crate::state::{LogLine, Severity, State};
 use crate::tasks::Task;
 
 impl Task {
@@ -180,6 +180,10 @@ impl State {
                     self.asking = None;
                     let unit = self.distributions.paste.unit;
                     self.distributions.pasted += 1;
+                    // What was wrong with it before is mended; the log keeps it.
+                    let refused = self.distributions.paste.refused.take();
+                    let is_it = |notice: &LogLine| Some(&notice.text) == refused.as_ref();
+                    self.notice.take_if(|notice| is_it(notice));
                     self.distributions.paste = PasteForm {
                         unit,
                         ..PasteForm::default()

@@ -57,7 +57,7 @@ pub(super) fn found(
     doubtful(of, open.fragments.selected, ui, commands);
     ui.separator();
     match measured {
-        Some(measured) => all(state, open, measured, ui, commands),
+        Some(measured) => all(state, open, (of, measured), ui, commands),
         None if state.work.is_running(Task::MEASURE_FRAGMENTS) => {
             ui.weak("Measuring…");
         }
@@ -204,7 +204,7 @@ fn doubtful(of: &PhotoOutlines, selected: Option<u32>, ui: &mut Ui, commands: &m
 fn all(
     state: &State,
     open: &OpenFlight,
-    measured: &MeasuredFragments,
+    (of, measured): (&PhotoOutlines, &MeasuredFragments),
     ui: &mut Ui,
     commands: &mut Vec<Command>,
 ) {
@@ -243,6 +243,7 @@ fn all(
             "Nothing said below",
             format!("{} {unit}", significant_digits(by_mass.limit * factor, 2)),
         ),
+        ("Outlined by", outlined_by(&of.by().engine)),
     ];
     ui.strong("This photo, by mass");
     ui.horizontal_wrapped(|ui| take_along(state, ui, commands));
@@ -250,6 +251,14 @@ fn all(
     for note in &measured.notes {
         let note = egui::RichText::new(note).color(ui.visuals().warn_fg_color);
         ui.add(egui::Label::new(note).wrap());
+    }
+}
+
+/// What outlined a photo first: the engine as it is chosen above, or as its file names it.
+fn outlined_by(engine: &str) -> String {
+    match engine {
+        "" => "not known".to_owned(),
+        name => name.to_owned(),
     }
 }
 
