@@ -74,7 +74,7 @@ fn numbers(of: &Measures) -> [f64; IN_WORLD] {
         of.widths[1],
         of.inscribed,
         of.roundness,
-        of.height,
+        of.height.unwrap_or(f64::NAN),
         of.sieve_size,
     ]
 }
@@ -113,7 +113,7 @@ fn fragment(value: &Value) -> Option<Fragment> {
             widths: [w0, w1],
             inscribed,
             roundness,
-            height,
+            height: (!height.is_nan()).then_some(height),
             sieve_size,
         }),
         _ => return None,

@@ -16,6 +16,28 @@ impl DistributionSet {
         }
     }
 
+    /// Calls the method of its curves so.
+    ///
+    /// # Errors
+    ///
+    /// Curves of several methods.
+    pub fn call_method(&mut self, method: &str) -> Result<(), Fault> {
+        let own = self.curves.iter().map(|curve| &*curve.labels.method);
+        let own: BTreeSet<&str> = own.collect();
+        if own.len() > 1 {
+            let own: Vec<&str> = own.into_iter().collect();
+            let what = format!(
+                "it has several methods, which cannot all be called '{method}': {}",
+                own.join(", ")
+            );
+            return Err(Fault::new(what, "leave the name in front of the file away"));
+        }
+        for curve in &mut self.curves {
+            method.clone_into(&mut curve.labels.method);
+        }
+        Ok(())
+    }
+
     /// Makes its curves differ in their labels from those of `others`, each with the name of its file:
     /// where a trial has no name, it is called `trial`, after this file. Says so in a sentence.
     ///

@@ -81,7 +81,8 @@ fn percent(text: &str) -> Result<f64, String> {
 #[derive(Debug, Args)]
 pub(super) struct DistributionArguments {
     /// Tables of cumulative percent passing by size, as CSV. Curves without a method are called after
-    /// their file; so is a trial without a name whose method was in a file before.
+    /// their file; so is a trial without a name whose method was in a file before. NAME=FILE calls a file's method NAME,
+    /// whatever it says itself: so two files of one method are held against each other.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]
@@ -116,9 +117,13 @@ impl DistributionArguments {
         };
         let mut read: Vec<(&Path, String, DistributionSet)> = Vec::new();
         let mut warnings = Vec::new();
-        for file in &self.files {
+        for (named, file) in self.named() {
             let (mut set, mut found) =
                 read_size_distributions(file, &columns).map_err(|error| error.to_string())?;
+            if let Some(method) = named {
+                (set.call_method(method))
+                    .map_err(|fault| FileError::new(file, fault).to_string())?;
+            }
             let stem = file.file_stem().unwrap_or_default().to_string_lossy();
             set.name_method(&stem);
             let others = read.iter().map(|(_, name, set)| (name.as_str(), set));
@@ -139,14 +144,25 @@ impl DistributionArguments {
         Ok((joined, warnings))
     }
 
+    /// The files, and what each one's method is to be called. Where a file has such a name, that is the file.
+    fn named(&self) -> impl Iterator<Item = (Option<&str>, &Path)> {
+        self.files.iter().map(|text| {
+            let parts = text.to_str().and_then(|text| text.split_once('='));
+            match parts.filter(|(name, _)| !name.trim().is_empty() && !text.exists()) {
+                Some((name, file)) => (Some(name.trim()), Path::new(file)),
+                None => (None, text.as_path()),
+            }
+        })
+    }
+
     /// The files.
-    pub(super) fn files(&self) -> &[PathBuf] {
-        &self.files
+    pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
+        self.named().map(|(_, file)| file)
     }
 
     /// The names of the files.
     pub(super) fn names(&self) -> Vec<String> {
-        let names = self.files.iter().map(|file| file.display().to_string());
+        let names = self.files().map(|file| file.display().to_string());
         names.collect()
     }
 }

@@ -115,8 +115,10 @@ impl Counted {
     /// Why there is no whole fragment.
     fn nothing(&self, off_surface: usize) -> Fault {
         if self.cut > 0 {
-            let what = "every fragment is cut by the photo's edge or by what is excluded";
-            return Fault::new(what, "take photos from farther away");
+            let what =
+                "every fragment is cut by the photo's edge or by what is excluded or no rock";
+            let remedy = "look whether the outlines are of fragments and not of what lies between; or take photos from farther away";
+            return Fault::new(what, remedy);
         }
         if off_surface > 0 {
             let what = "no fragment lies on the surface";

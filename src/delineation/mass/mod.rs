@@ -62,7 +62,8 @@ pub struct PhotoFragments {
 impl PhotoFragments {
     /// From a photo's label image, the scale field of all its pixels and the measures of its fragments, both in `unit`; the narrowest
     /// that its engine outlines is `least_across` pixels. Of what other tools and people outlined (`None`) the limit is the
-    /// smallest that counts and has the pixels of the narrowest that an engine outlines: a speck says nothing of the rest.
+    /// smallest that counts and is as wide as the narrowest that an engine outlines, or that width where none is: a speck and a
+    /// line of pixels say nothing of the rest.
     pub fn new(
         labels: &LabelImage,
         field: &ScaleField,
@@ -84,16 +85,14 @@ impl PhotoFragments {
             }
         }
         let scale: f64 = (pixels / area).sqrt();
-        let smallest = |with_specks: bool| {
-            let counts = fragments.iter().filter(|of| !of.is_cut);
-            let counts = counts.filter(|of| with_specks || !is_speck(of));
-            let sizes = counts.filter_map(|of| Some(of.world?.sieve_size));
-            sizes.reduce(f64::min)
+        let counts = (fragments.iter()).filter(|of| !of.is_cut && !is_speck(of));
+        let sizes = counts.filter_map(|of| Some(of.world?.sieve_size));
+        let of_others = || {
+            sizes
+                .reduce(f64::min)
+                .unwrap_or(LEAST_PIXELS_ACROSS / scale)
         };
-        let limit = match least_across {
-            Some(across) => across / scale,
-            None => smallest(false).or_else(|| smallest(true)).unwrap_or(0.0),
-        };
+        let limit = least_across.map_or_else(of_others, |across| across / scale);
         Self {
             frame: DVec2::new(labels.width as f64, labels.height as f64),
             fines,
@@ -104,9 +103,11 @@ impl PhotoFragments {
     }
 }
 
-/// Whether a fragment has fewer pixels than the narrowest that an engine outlines.
+/// Whether a fragment has fewer pixels than the narrowest that an engine outlines, or is not as wide.
 fn is_speck(fragment: &Fragment) -> bool {
+    let width = fragment.world.map(|of| of.widths[0] * of.scale);
     (fragment.pixels as f64) < std::f64::consts::PI / 4.0 * LEAST_PIXELS_ACROSS.powi(2)
+        || width.is_some_and(|width| width < LEAST_PIXELS_ACROSS)
 }
 
 impl PhotoFragments {
@@ -121,6 +122,18 @@ impl PhotoFragments {
         (count > 0).then(|| {
             format!(
                 "{count} {outlines} of less than {LEAST_PIXELS_ACROSS} pixels across: too small to be measured, and below the limit"
+            )
+        })
+    }
+
+    /// That some lie where nothing can be measured.
+    fn off_surface(&self) -> Option<String> {
+        let is_off = |of: &&Fragment| !of.is_cut && of.world.is_none();
+        let count = self.fragments.iter().filter(is_off).count();
+        let outlines = if count == 1 { "outline" } else { "outlines" };
+        (count > 0).then(|| {
+            format!(
+                "{count} {outlines} of which too little lies on the surface, as over a hole of the cloud: not measured, and counted nowhere"
             )
         })
     }
@@ -162,7 +175,7 @@ impl PhotoFragments {
         let little = self.little(labels);
         // That is more than a large piece of it.
         let bare = if little.is_none() { bare(labels) } else { None };
-        let notes = [self.specks(), self.ball(), bare, little];
+        let notes = [self.specks(), self.off_surface(), self.ball(), bare, little];
         notes.into_iter().flatten().collect()
     }
 
@@ -451,7 +464,7 @@ pub(crate) mod tests {
                 widths: [size; 2],
                 inscribed: size,
                 roundness: 1.0,
-                height: 0.0,
+                height: Some(0.0),
                 sieve_size: size,
             }),
         }

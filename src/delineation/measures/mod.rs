@@ -64,8 +64,8 @@ pub struct Measures {
     /// 4 area / (pi greatest width squared): 1 for a circle (ISO 9276-6, roundness).
     pub roundness: f64,
     /// How high it stands out of a plane through its outline: 95 of 100 of its pixels stand lower. Below 0 where it lies in
-    /// a hollow.
-    pub height: f64,
+    /// a hollow; `None` where its outline is no more than a line.
+    pub height: Option<f64>,
     /// The sieve opening that it is taken to pass.
     pub sieve_size: f64,
 }
@@ -140,14 +140,12 @@ pub fn measured(labels: &LabelImage, field: &ScaleField, shape: SieveShape) -> V
         .collect()
 }
 
-/// The height that most pixels do not exceed.
-fn stands_out(heights: &mut [f32]) -> f64 {
+/// The height that most pixels do not exceed; `None` of none.
+fn stands_out(heights: &mut [f32]) -> Option<f64> {
     let place = (heights.len() as f64 * LOWER) as usize;
-    let Some(last) = heights.len().checked_sub(1) else {
-        return f64::NEG_INFINITY;
-    };
+    let last = heights.len().checked_sub(1)?;
     let (_, height, _) = heights.select_nth_unstable_by(place.min(last), f32::total_cmp);
-    f64::from(*height)
+    Some(f64::from(*height))
 }
 
 /// The diameter of the circle with this area.
@@ -196,7 +194,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn fragment(&mut self, number: u32, height: f64, shape: SieveShape) -> Fragment {
+    fn fragment(&mut self, number: u32, height: Option<f64>, shape: SieveShape) -> Fragment {
         let hull = hull(&mut self.corners);
         let [low, high] = hull.iter().fold(
             [DVec2::INFINITY, DVec2::NEG_INFINITY],

@@ -89,7 +89,7 @@ fn a_disc_and_a_rectangle() {
     close(of.inscribed, 0.8, 0.025);
     close(of.roundness, 1.0, 0.03);
     assert_eq!(of.sieve_size, of.diameter);
-    assert!(of.height.abs() < 1e-9);
+    assert!(of.height.unwrap().abs() < 1e-9);
     // 20 pixels right of the axis and 10 below it, seen from above with y up: x 0.16, y -0.08.
     assert!(
         (of.place - DVec3::new(0.16, -0.08, 0.0)).length() < 1e-3,
@@ -109,7 +109,7 @@ fn a_slope_has_more_surface() {
     let found = measured(&labels, &field(1.0), SieveShape::Breadth);
     let of = found[0].world.unwrap();
     close(of.surface_area / of.area, 2f64.sqrt(), 0.01);
-    assert!(of.height.abs() < 1e-6, "{}", of.height);
+    assert!(of.height.unwrap().abs() < 1e-6, "{of:?}");
 }
 
 /// A ridge z = -|x| / 5 over a square from -a to a: its outline lies at -a / 5 on two sides and at -a / 10 in the mean on
@@ -121,9 +121,19 @@ fn a_ridge_stands_out_of_its_outline() {
         [-9.0, 0.0, 9.0].map(|x: f64| [-9.0, 9.0].map(|y| DVec3::new(x, y, -x.abs() / 5.0)));
     let labels = drawn(|x, y| u32::from((x - 200.0).abs() < 100.0 && (y - 200.0).abs() < 100.0));
     let found = measured(&labels, &field_of(points.concat()), SieveShape::Circle);
-    let height = found[0].world.unwrap().height;
+    let height = found[0].world.unwrap().height.unwrap();
     // 100 pixels are 0.8 at the ridge and a little more at the lower sides.
     close(height, (3.0 / 20.0 - 1.0 / 100.0) * 0.82, 0.03);
+}
+
+/// A line of pixels has no plane through its outline, and one pixel has none: nothing is said of how they stand out.
+#[test]
+fn a_line_does_not_stand_out() {
+    for wide in [20.0, 0.5] {
+        let labels = drawn(|x, y| u32::from((x - 200.5).abs() <= wide && (y - 200.5).abs() < 0.6));
+        let found = measured(&labels, &field(0.0), SieveShape::Circle);
+        assert_eq!(found[0].world.unwrap().height, None, "{found:?}");
+    }
 }
 
 /// A spike of one point, a metre high, over three of a hundred parts of a level square: the square stands out by nothing.
@@ -135,6 +145,6 @@ fn one_stray_point_does_not_make_a_fragment_high() {
     points.push(DVec3::new(0.001, 0.002, 1.0));
     let labels = drawn(|x, y| u32::from((x - 200.0).abs() < 100.0 && (y - 200.0).abs() < 100.0));
     let found = measured(&labels, &field_of(points), SieveShape::Circle);
-    let height = found[0].world.unwrap().height;
+    let height = found[0].world.unwrap().height.unwrap();
     assert!(height.abs() < 0.01, "{height}");
 }

@@ -41,7 +41,10 @@ pub(super) fn fragments_csv(
             ];
             match numbers(fragment, world.in_units_of(unit)) {
                 None => row.resize(heads.len(), String::new()),
-                Some(numbers) => row.extend(numbers.map(|number| number.to_string())),
+                Some(numbers) => row.extend(numbers.map(|number| match number.is_nan() {
+                    true => String::new(),
+                    false => number.to_string(),
+                })),
             }
             rows.push(row);
         }
@@ -77,7 +80,8 @@ pub(super) fn heads(world: LengthUnit, unit: LengthUnit) -> [String; 21] {
     ]
 }
 
-/// The last 15 of [`heads`]; `None` where too little of it lies on the surface. `factor`: units in one of the world.
+/// The last 15 of [`heads`], NaN where one is not known; `None` where too little of it lies on the surface. `factor`: units in
+/// one of the world.
 pub(super) fn numbers(fragment: &Fragment, factor: f64) -> Option<[f64; 15]> {
     let world = fragment.world?;
     Some([
@@ -94,7 +98,7 @@ pub(super) fn numbers(fragment: &Fragment, factor: f64) -> Option<[f64; 15]> {
         world.widths[0] * factor,
         world.inscribed * factor,
         world.roundness,
-        world.height * factor,
+        world.height.map_or(f64::NAN, |height| height * factor),
         world.sieve_size * factor,
     ])
 }

@@ -61,8 +61,8 @@ pub(super) fn images(
     annotations: Vec<Annotation>,
 ) -> Result<Vec<OutlinedImage>, Fault> {
     let categories = categories.into_iter();
-    let meanings: HashMap<String, Meaning> = categories
-        .map(|category| (category.id.to_string(), Meaning::of_class(&category.name)))
+    let classes: HashMap<String, String> = categories
+        .map(|category| (category.id.to_string(), category.name))
         .collect();
     let mut places: HashMap<String, usize> = HashMap::new();
     let mut found: Vec<OutlinedImage> = Vec::new();
@@ -97,7 +97,8 @@ pub(super) fn images(
         let image = &mut found[at];
         let is_crowd = !matches!(&annotation.iscrowd, Value::Null | Value::Bool(false))
             && annotation.iscrowd.as_f64() != Some(0.0);
-        let meaning = meanings.get(&annotation.category_id.to_string());
+        let class = classes.get(&annotation.category_id.to_string());
+        let class = class.cloned().unwrap_or_default();
         let pieces = match pieces(annotation.segmentation) {
             Ok(pieces) => pieces,
             Err(why) => {
@@ -110,7 +111,8 @@ pub(super) fn images(
             crowds[at].push(image.masks.len());
         }
         image.masks.push(Mask {
-            meaning: meaning.copied().unwrap_or(Meaning::Fragment),
+            meaning: Meaning::of_class(&class),
+            class,
             number: annotation.fragment,
             place,
             pieces,

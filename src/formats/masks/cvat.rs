@@ -103,6 +103,7 @@ fn image(node: Node<'_, '_>, is_own: bool) -> Result<OutlinedImage, Fault> {
         let group = shape.attribute("group_id").filter(|group| *group != "0");
         let mask = Mask {
             meaning: Meaning::of_class(label),
+            class: label.to_owned(),
             number: group
                 .filter(|_| is_own)
                 .and_then(|group| group.parse().ok()),

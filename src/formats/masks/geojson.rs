@@ -6,12 +6,12 @@
 //!   moved by half a pixel, and a note says so.
 //! - Where no row is above 0 and some are below -1, rows were counted upwards (QGIS over a photo without a place): they are
 //!   turned, and a note says so.
-//! - The class is `class`, `label`, `category` or `name` of the properties, or QuPath's `classification`; the number of a
-//!   fragment is `fragment` in files of ours.
+//! - The class is `class`, `label`, `category`, `type` or `name` of the properties, in small letters or capitals, or QuPath's
+//!   `classification`; the number of a fragment is `fragment` in files of ours.
 
 use glam::DVec2;
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::numbers::Numbers;
 use super::outline::{Mask, Meaning, OutlinedImage, Piece};
@@ -32,34 +32,34 @@ pub(super) struct Object {
     coordinates: Numbers,
 }
 
-/// What a feature says of itself. What is of no class is passed over.
+/// The keys of a class, in small letters, the first that is there counts.
+const CLASS_KEYS: [&str; 6] = [
+    "class",
+    "label",
+    "category",
+    "classification",
+    "type",
+    "name",
+];
+
+/// What a feature says of itself.
 #[derive(Debug, Default, Deserialize)]
-struct Properties {
-    #[serde(default)]
-    class: Value,
-    #[serde(default)]
-    label: Value,
-    #[serde(default)]
-    category: Value,
-    #[serde(default)]
-    name: Value,
-    #[serde(default)]
-    classification: Value,
-    #[serde(default)]
-    fragment: Value,
-}
+#[serde(transparent)]
+struct Properties(Map<String, Value>);
 
 impl Properties {
-    fn meaning(&self) -> Meaning {
-        let classes = [
-            &self.class,
-            &self.label,
-            &self.category,
-            &self.classification["name"],
-            &self.name,
-        ];
-        let class = classes.into_iter().find_map(Value::as_str);
-        Meaning::of_class(class.unwrap_or_default())
+    /// The name of its class; empty where it has none. Programs of maps write keys in capitals as they like.
+    fn class(&self) -> &str {
+        let of = |key: &&str| {
+            let is_it = |(name, _): &(&String, &Value)| name.eq_ignore_ascii_case(key);
+            let (_, value) = self.0.iter().find(is_it)?;
+            value.as_str().or_else(|| value["name"].as_str())
+        };
+        CLASS_KEYS.iter().find_map(of).unwrap_or_default()
+    }
+
+    fn fragment(&self) -> Option<u64> {
+        self.0.get("fragment")?.as_u64()
     }
 }
 
@@ -95,9 +95,11 @@ pub(super) fn image(
             continue;
         }
         let properties = feature.properties.as_ref();
-        let number = properties.and_then(|of| of.fragment.as_u64());
+        let number = properties.and_then(Properties::fragment);
+        let class = properties.map(Properties::class).unwrap_or_default();
         image.masks.push(Mask {
-            meaning: properties.map_or(Meaning::Fragment, Properties::meaning),
+            meaning: Meaning::of_class(class),
+            class: class.to_owned(),
             number: number
                 .filter(|_| is_own)
                 .and_then(|number| u32::try_from(number).ok()),

@@ -6,6 +6,7 @@
 //!   negative numbers. In 8 bits every number is a fragment's.
 //! - A picture of another program with one number alone is a mask: each of its regions that touch by sides is
 //!   a fragment. So says a note.
+//! - A number that reaches all four edges is that of what lies between the others: no fragment, which is said.
 //! - Many more regions than numbers are refused: numbers that several fragments share are of no fragment.
 //! - A picture of colours whose three parts are the same is one of gray. Others are refused: colours are no
 //!   numbers.
@@ -16,7 +17,7 @@ use std::io::Cursor;
 use image::codecs::png::PngDecoder;
 use image::{ColorType, DynamicImage, ExtendedColorType, ImageDecoder};
 
-use super::regions::regions;
+use super::regions::{regions, take_off_behind};
 use super::{Masks, OutlinedPhoto, check_size, renumbered};
 use crate::clouds::geotiff::Number;
 use crate::fault::Fault;
@@ -52,6 +53,7 @@ pub(super) fn read(bytes: &[u8], photo: &OutlinedPhoto<'_>, is_own: bool) -> Res
         false => tiff(bytes, photo, &mut notes)?,
     };
     if !is_own {
+        take_off_behind(&mut labels, &mut notes);
         let (found, parts) = regions(&labels);
         match numbers(&labels)[..] {
             [number] if parts > 1 => {

@@ -56,6 +56,7 @@ pub(super) fn image(
         };
         let mask = Mask {
             meaning,
+            class: shape.label.clone(),
             number: shape
                 .group_id
                 .as_u64()

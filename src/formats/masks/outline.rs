@@ -20,6 +20,8 @@ pub(super) struct OutlinedImage {
 #[derive(Debug)]
 pub(super) struct Mask {
     pub(super) meaning: Meaning,
+    /// The name of its class; empty where it has none.
+    pub(super) class: String,
     /// The number that the file says its fragment has, where it is one of ours.
     pub(super) number: Option<u32>,
     /// Where in the file it stands ("annotation 7").
@@ -36,49 +38,139 @@ pub(super) enum Meaning {
     NotRock,
 }
 
-/// The names of classes that are no fragments, in small letters, with spaces between words. `fines` and `not rock` are
+/// The names of classes that are no fragments, in small letters, with spaces between words, of one. `fines` and `not rock` are
 /// what we write.
-const FINES_NAMES: [&str; 9] = [
-    "fines", "fine", "sand", "soil", "mud", "dirt", "dust", "clay", "matrix",
+const FINES_NAMES: [&str; 11] = [
+    "fine",
+    "fine material",
+    "fine rock",
+    "sand",
+    "soil",
+    "mud",
+    "dirt",
+    "dust",
+    "clay",
+    "matrix",
+    "silt",
 ];
-const NOT_ROCK_NAMES: [&str; 20] = [
+const NOT_ROCK_NAMES: [&str; 54] = [
     "not rock",
     "no rock",
     "notrock",
+    "non rock",
     "background",
+    "bg",
     "sky",
     "vegetation",
+    "grass",
+    "tree",
+    "bush",
+    "plant",
     "machine",
+    "machinery",
+    "equipment",
     "vehicle",
     "truck",
+    "car",
+    "excavator",
+    "loader",
+    "shovel",
+    "bucket",
+    "drill",
+    "drone",
     "person",
+    "people",
+    "human",
+    "worker",
     "scale",
     "scale object",
+    "scaleobject",
+    "scale bar",
+    "scalebar",
+    "scale ball",
+    "reference",
     "ball",
+    "sphere",
+    "target",
+    "marker",
+    "water",
+    "puddle",
+    "road",
+    "building",
+    "shade",
+    "shadow",
     "ignore",
     "ignored",
     "void",
+    "hole",
     "exclude",
     "excluded",
     "masked",
     "unlabeled",
+    "unlabelled",
+];
+/// Those of fragments; other names are taken for fragments, too, and said.
+const FRAGMENT_NAMES: [&str; 24] = [
+    "",
+    "fragment",
+    "rock",
+    "rock fragment",
+    "stone",
+    "block",
+    "boulder",
+    "cobble",
+    "pebble",
+    "gravel",
+    "grain",
+    "clast",
+    "particle",
+    "ore",
+    "muck",
+    "rubble",
+    "ballast",
+    "aggregate",
+    "lump",
+    "coarse",
+    "object",
+    "instance",
+    "segment",
+    "mask",
 ];
 
 impl Meaning {
     /// Of a class by its name: all that is not known for something else is a fragment.
     pub(super) fn of_class(name: &str) -> Self {
-        let words = name
-            .split(|c: char| !c.is_alphanumeric())
-            .filter(|word| !word.is_empty());
-        let name = words.collect::<Vec<_>>().join(" ").to_lowercase();
-        if FINES_NAMES.contains(&&*name) {
+        let is_one_of = |names: &[&str]| is_one_of(names, &in_words(name));
+        if is_one_of(&FINES_NAMES) {
             Self::Fines
-        } else if NOT_ROCK_NAMES.contains(&&*name) {
+        } else if is_one_of(&NOT_ROCK_NAMES) {
             Self::NotRock
         } else {
             Self::Fragment
         }
     }
+}
+
+/// Whether a class has a name that nobody gives to fragments but perhaps its maker: "stone 12" is one.
+pub(super) fn is_odd_of_fragments(class: &str) -> bool {
+    let words = in_words(class);
+    let name = words.trim_end_matches(|c: char| c.is_numeric()).trim_end();
+    !is_one_of(&FRAGMENT_NAMES, name)
+}
+
+/// In small letters, with spaces between words.
+fn in_words(name: &str) -> String {
+    let words = name.split(|c: char| !c.is_alphanumeric());
+    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    words.join(" ").to_lowercase()
+}
+
+/// One of several, too.
+fn is_one_of(names: &[&str], name: &str) -> bool {
+    let singular = name.strip_suffix('s').unwrap_or(name);
+    names
+        .iter()
+        .any(|known| *known == name || *known == singular)
 }
 
 /// A part of a region.

@@ -1,10 +1,11 @@
 //! From masks to a label image. Where masks overlap, the smaller piece lies on top, as a small stone lies on a large one;
 //! of two of a size the later. A hole stays open to what lies below.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
-use super::outline::{Mask, Meaning, OutlinedImage, Piece, Runs};
+use super::outline::{Mask, Meaning, OutlinedImage, Piece, Runs, is_odd_of_fragments};
+use super::regions::take_off_behind;
 use super::{Masks, OutlinedPhoto, check_size, renumbered};
 use crate::fault::Fault;
 use crate::labels::{FINES, LabelImage, NOT_ROCK, spans_of_rings};
@@ -63,7 +64,7 @@ pub(super) fn painted(
     for label in labels.iter_mut().filter(|label| **label == BARE) {
         *label = FINES;
     }
-    let labels = LabelImage {
+    let mut labels = LabelImage {
         width: photo.width as usize,
         height: photo.height as usize,
         labels,
@@ -76,6 +77,8 @@ pub(super) fn painted(
             ));
         }
         say_hidden(image, &layers, &numbers, &labels, &mut notes);
+        say_odd_classes(image, &mut notes);
+        take_off_behind(&mut labels, &mut notes);
     }
     if image.masks.is_empty() {
         notes.say("no fragment is outlined in it");
@@ -220,6 +223,24 @@ fn say_hidden(
             let what = "an outline is hidden below smaller ones and left out";
             notes.at(what, &image.masks[layer.mask].place);
         }
+    }
+}
+
+/// Says of classes that may be none of rock.
+fn say_odd_classes(image: &OutlinedImage, notes: &mut Notes) {
+    let fragments = image
+        .masks
+        .iter()
+        .filter(|mask| mask.meaning == Meaning::Fragment);
+    let odd = fragments
+        .map(|mask| mask.class.trim())
+        .filter(|class| is_odd_of_fragments(class));
+    let odd: BTreeSet<&str> = odd.collect();
+    if !odd.is_empty() {
+        let names = crate::fault::first_names(odd.iter().copied());
+        notes.say(format!(
+            "outlines of the class {names} are taken for fragments: call what is no rock 'not rock', what is fine 'fines'"
+        ));
     }
 }
 

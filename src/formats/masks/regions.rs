@@ -1,6 +1,9 @@
 //! In how many pieces fragments lie: what is partly behind others has several, and so has a number that fragments share.
 
+use std::collections::BTreeSet;
+
 use crate::labels::{FINES, LabelImage, NOT_ROCK};
+use crate::text::notes::Notes;
 
 /// A piece smaller than this share of a fragment's largest is a crumb of its edge.
 const CRUMB: f64 = 0.1;
@@ -47,6 +50,37 @@ impl Piece {
             begin.saturating_sub(self.to[axis].min(other.to[axis]) + 1)
         };
         along(0).max(along(1))
+    }
+}
+
+/// Takes off what reaches all four edges of the photo, and says so: what lies behind the stones has a number in some programs'
+/// label images, and an outline of its own in others' files. A stone that is larger than the photo could not be measured either.
+pub(super) fn take_off_behind(labels: &mut LabelImage, notes: &mut Notes) {
+    let (width, height) = (labels.width, labels.height);
+    let row = |row: usize| &labels.labels[row * width..(row + 1) * width];
+    let column = |column: usize| labels.labels.iter().skip(column).step_by(width.max(1));
+    if width < 2 || height < 2 {
+        return;
+    }
+    let is_fragment = |label: &u32| *label != FINES && *label != NOT_ROCK;
+    let of = |edge: &mut dyn Iterator<Item = &u32>| -> BTreeSet<u32> {
+        edge.copied().filter(is_fragment).collect()
+    };
+    let mut behind = of(&mut row(0).iter());
+    for other in [
+        of(&mut row(height - 1).iter()),
+        of(&mut column(0)),
+        of(&mut column(width - 1)),
+    ] {
+        behind.retain(|label| other.contains(label));
+    }
+    for number in &behind {
+        let pixels = labels.labels.iter_mut().filter(|label| *label == number);
+        let count = pixels.map(|label| *label = FINES).count();
+        let share = 100.0 * count as f64 / (width * height) as f64;
+        notes.say(format!(
+            "fragment {number} reaches all four edges of the photo, over {share:.0} % of it: it is taken for what lies between the others, and for none"
+        ));
     }
 }
 

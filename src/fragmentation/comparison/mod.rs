@@ -188,7 +188,8 @@ fn methods_of<'a>(
     };
     if methods.len() < 2 {
         let what = format!("{names} is the only method");
-        return Err(Fault::new(what, "give another one to compare with it"));
+        let remedy = "give another one to compare with it, or another name to one of its files (on the command line NAME=FILE)";
+        return Err(Fault::new(what, remedy));
     }
     let (_, trials) = methods.remove(at);
     Ok((trials, methods))

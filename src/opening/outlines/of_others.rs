@@ -1,51 +1,18 @@
-//! Outlines that another tool made, or a person with it: which file has those of a photo, and what they are in the
-//! undistorted photo.
+//! Outlines that another tool made, or a person with it: those of a photo, as they are in the undistorted photo.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::camera::Camera;
 use crate::delineation::leave_out;
 use crate::fault::Fault;
-use crate::files::{last_segment, unreadable_folder};
 use crate::flight::Flight;
 use crate::formats::{FileError, MaskFile, Masks, OutlinedPhoto};
+use crate::outlines::named_files::{
+    candidates, files_below, files_of_many, is_namesake, is_photo, is_told_by_folder,
+    may_be_outlines, names, rank, stem,
+};
 use crate::picture;
 use crate::scale::ImageKind;
-
-/// Endings of a photo's files in a folder, behind its name without what follows the last dot: in this order they are looked
-/// for. ImageGrains puts its model between: NAME_MODEL_pred.tif.
-const ENDINGS: [&str; 20] = [
-    "_labels.png",
-    ".labels.png",
-    "_labels.tif",
-    "_labels.tiff",
-    "_mask.png",
-    "_masks.png",
-    "_mask.tif",
-    "_masks.tif",
-    "_cp_masks.png",
-    "_cp_masks.tif",
-    "_pred.tif",
-    "_pred.png",
-    ".json",
-    "_labelme.json",
-    ".geojson",
-    "_grains.geojson",
-    "_fragments.geojson",
-    ".xml",
-    ".tif",
-    ".png",
-];
-
-/// What fragscale writes beside label images, of which nobody reads fragments.
-const BESIDE: [&str; 5] = [
-    "_outlines.png",
-    "_outlines.json",
-    "_world.geojson",
-    "fragments_coco.json",
-    "fragments_cvat.xml",
-];
 
 /// Where outlines are looked for.
 #[derive(Debug)]
@@ -58,6 +25,8 @@ pub struct OutlinesOfOthers {
 #[derive(Debug)]
 enum Place {
     File(MaskFile),
+    /// A folder's files of many photos each: an export of COCO or CVAT lies in a folder of its own, perhaps beside its photos.
+    OfMany(Vec<(PathBuf, MaskFile)>),
     /// The files of a folder, by name.
     Folder(Vec<PathBuf>),
 }
@@ -69,23 +38,17 @@ impl OutlinesOfOthers {
     /// # Errors
     /// Where it is neither, or the file has no outlines.
     pub fn open(path: &Path, of: Option<ImageKind>) -> Result<Self, FileError> {
-        let mut path = path.to_owned();
-        let place = if path.is_dir() {
-            let entries = fs::read_dir(&path)
-                .map_err(|error| FileError::new(&path, unreadable_folder(&error)))?;
-            let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-            files.retain(|file| file.is_file());
-            files.sort_unstable();
-            match the_one_of_many_photos(&files) {
-                Some((one, file)) => {
-                    path = one;
-                    Place::File(file)
+        let place = match path.is_dir() {
+            false => Place::File(MaskFile::read(path)?),
+            true => {
+                let files = files_below(path)?;
+                match files_of_many(&files) {
+                    Some(of_many) => Place::OfMany(of_many),
+                    None => Place::Folder(files),
                 }
-                None => Place::Folder(files),
             }
-        } else {
-            Place::File(MaskFile::read(&path)?)
         };
+        let path = path.to_owned();
         Ok(Self { path, of, place })
     }
 
@@ -93,7 +56,8 @@ impl OutlinesOfOthers {
     pub fn is_of(&self, name: &str) -> bool {
         match &self.place {
             Place::File(file) if file.is_of_one() => self.is_named_for(&self.path, file, name),
-            Place::File(file) => file.photos().any(|other| stem(other) == stem(name)),
+            Place::File(file) => names(file, name),
+            Place::OfMany(files) => files.iter().any(|(_, file)| names(file, name)),
             Place::Folder(files) => candidates(files, name).next().is_some(),
         }
     }
@@ -101,10 +65,11 @@ impl OutlinesOfOthers {
     /// All files that may be read.
     pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
         let files = match &self.place {
-            Place::File(_) => std::slice::from_ref(&self.path),
-            Place::Folder(files) => files,
+            Place::File(_) => vec![&self.path],
+            Place::OfMany(files) => files.iter().map(|(path, _)| path).collect(),
+            Place::Folder(files) => files.iter().collect(),
         };
-        files.iter()
+        files.into_iter()
     }
 
     /// That a file of one photo, which is taken for `name`, is named as the outlines of another of these photos.
@@ -137,6 +102,11 @@ impl OutlinesOfOthers {
                 .filter(|other| of_none(&|photo| stem(photo) == stem(other)))
                 .map(str::to_owned)
                 .collect(),
+            Place::OfMany(files) => (files.iter())
+                .flat_map(|(_, file)| file.photos())
+                .filter(|other| of_none(&|photo| stem(photo) == stem(other)))
+                .map(str::to_owned)
+                .collect(),
             Place::Folder(files) => files
                 .iter()
                 .filter(|path| may_be_outlines(path))
@@ -162,10 +132,13 @@ impl OutlinesOfOthers {
     ) -> Result<Masks, Fault> {
         let photos = &flight.parts().photos;
         let photo = &photos[index];
-        let mut masks = self.of_photo(&photo.name, flight.camera(photo), is_only)?;
+        let names = || photos.iter().map(|photo| photo.name.as_str());
+        let is_other = |other: &&str| *other != photo.name && is_namesake(other, &photo.name);
+        let namesake = names().find(is_other);
+        let mut masks = self.of_photo(&photo.name, namesake, flight.camera(photo), is_only)?;
         leave_out(&mut masks.labels, left_out);
         if is_only {
-            let names = photos.iter().map(|photo| photo.name.as_str());
+            let names = names();
             masks
                 .notes
                 .extend(self.named_for_another(&photo.name, names));
@@ -173,12 +146,18 @@ impl OutlinesOfOthers {
         Ok(masks)
     }
 
-    /// The label image of the undistorted photo, with what is to be said about it. `is_only`: no other photo is asked for, so
-    /// that a file of one photo is of this one.
+    /// The label image of the undistorted photo, with what is to be said about it. `namesake` is another photo of the flight
+    /// whose file has the same name. `is_only`: no other photo is asked for, so that a file of one photo is of this one.
     ///
     /// # Errors
-    /// Where there is none of this photo, or it cannot be read; the file is named.
-    fn of_photo(&self, name: &str, camera: &Camera, is_only: bool) -> Result<Masks, Fault> {
+    /// Where there is none of this photo, or it cannot be read, or may be the namesake's; the file is named.
+    fn of_photo(
+        &self,
+        name: &str,
+        namesake: Option<&str>,
+        camera: &Camera,
+        is_only: bool,
+    ) -> Result<Masks, Fault> {
         let photo = OutlinedPhoto {
             name,
             width: camera.width,
@@ -192,6 +171,14 @@ impl OutlinesOfOthers {
                 fault.remedy,
             )
         };
+        // A file that says a photo's name without its folder is as likely another one's.
+        let check_namesake = |is_told: bool| match namesake.filter(|_| !is_told) {
+            None => Ok(()),
+            Some(other) => Err(Fault::new(
+                format!("it may be of {name} or of {other}"),
+                "name the photo's folder, too: DIR/NAME_labels.png, DIR_NAME_labels.png, or DIR/NAME in a file of many photos",
+            )),
+        };
         let mut passed_over = None;
         let read;
         let (path, file) = match &self.place {
@@ -201,15 +188,35 @@ impl OutlinesOfOthers {
                     let remedy = "name the photo (--photo), or name the file as the photo";
                     return Err(named(&self.path, Fault::new(what, remedy)));
                 }
+                let is_told = file.is_of_one() && is_only || file.photos().any(|own| own == name);
+                (check_namesake(is_told)).map_err(|fault| named(&self.path, fault))?;
                 (self.path.as_path(), file)
+            }
+            Place::OfMany(files) => {
+                let exact = files
+                    .iter()
+                    .find(|(_, file)| file.photos().any(|own| own == name));
+                let mut like = files.iter().filter(|(_, file)| names(file, name));
+                let (path, file) = match (exact, like.next(), like.next()) {
+                    (Some(exact), ..) => exact,
+                    (None, Some((one, _)), Some((other, _))) => {
+                        let what = format!("{} has outlines of such a photo, too", other.display());
+                        let remedy = "give the outlines of this photo in a file of its own";
+                        return Err(named(one, Fault::new(what, remedy)));
+                    }
+                    (None, Some(one), None) => {
+                        check_namesake(false).map_err(|fault| named(&one.0, fault))?;
+                        one
+                    }
+                    (None, None, _) => return Err(self.without_it()),
+                };
+                (path.as_path(), file)
             }
             Place::Folder(files) => {
                 let mut candidates = candidates(files, name);
-                let path = candidates.next().ok_or_else(|| {
-                    let what = format!("there are no outlines of it in {}", self.path.display());
-                    // The same of all photos: it is said once.
-                    Fault::new(what, "put them there, named as the photo (NAME_labels.png)")
-                })?;
+                let path = candidates.next().ok_or_else(|| self.without_it())?;
+                check_namesake(is_told_by_folder(path, name))
+                    .map_err(|fault| named(path, fault))?;
                 passed_over = candidates.next();
                 read = MaskFile::read(path).map_err(|error| named(path, error.fault))?;
                 (path, &read)
@@ -244,6 +251,15 @@ impl OutlinesOfOthers {
         Ok(masks)
     }
 
+    fn without_it(&self) -> Fault {
+        // The same of all photos: it is said once.
+        let what = format!("there are no outlines of it in {}", self.path.display());
+        Fault::new(
+            what,
+            "put them there, named as the photo (NAME_labels.png; no JPEG, which changes numbers)",
+        )
+    }
+
     /// Whether the name of a file of one photo, or the photo that it names, is this photo's.
     fn is_named_for(&self, path: &Path, file: &MaskFile, photo: &str) -> bool {
         let same = |other: &str| stem(other).eq_ignore_ascii_case(stem(photo));
@@ -251,62 +267,10 @@ impl OutlinesOfOthers {
     }
 }
 
-/// The one file of a folder that may be outlines, where it has those of many photos: an export of COCO or CVAT lies in a folder of its
-/// own, perhaps beside its photos.
-fn the_one_of_many_photos(files: &[PathBuf]) -> Option<(PathBuf, MaskFile)> {
-    let mut may_be = files.iter().filter(|path| may_be_outlines(path));
-    let (Some(one), None) = (may_be.next(), may_be.next()) else {
-        return None;
-    };
-    // What is wrong with it is said where a photo's outlines are asked for.
-    let file = MaskFile::read(one).ok()?;
-    (!file.is_of_one()).then(|| (one.clone(), file))
-}
-
-/// The files of a folder that may be a photo's outlines, the likeliest first.
-fn candidates<'a>(files: &'a [PathBuf], photo: &str) -> impl Iterator<Item = &'a Path> {
-    let ranked = files
-        .iter()
-        .filter_map(|path| Some((rank(path, photo)?, path.as_path())));
-    let mut ranked: Vec<(usize, &Path)> = ranked.collect();
-    ranked.sort();
-    ranked.into_iter().map(|(_, path)| path)
-}
-
-/// Whether outlines may be in a file of this name: not what fragscale writes beside label images.
-fn may_be_outlines(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let name = name.to_lowercase();
-    let kinds = [".png", ".tif", ".tiff", ".json", ".geojson", ".xml"];
-    kinds.iter().any(|kind| name.ends_with(kind)) && !BESIDE.iter().any(|own| name.ends_with(own))
-}
-
-/// Whether a file is the photo itself.
-fn is_photo(path: &Path, photo: &str) -> bool {
-    let name = path.file_name().and_then(|name| name.to_str());
-    name.is_some_and(|name| name.to_lowercase() == last_segment(photo).to_lowercase())
-}
-
-/// Which ending a photo's file has; `None` where it is not named as the photo, or is the photo.
-fn rank(path: &Path, photo: &str) -> Option<usize> {
-    let name = path.file_name()?.to_str()?.to_lowercase();
-    if is_photo(path, photo) {
-        return None;
-    }
-    let ending = name.strip_prefix(&stem(photo).to_lowercase())?;
-    let known = ENDINGS.iter().position(|known| ending == *known);
-    let of_model = ending.starts_with('_') && ending.ends_with("_pred.tif");
-    known.or(of_model.then_some(ENDINGS.len()))
-}
-
-/// The last part of a path without what is behind its last dot.
-fn stem(name: &str) -> &str {
-    let name = last_segment(name);
-    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
-}
-
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]
@@ -364,9 +328,60 @@ mod tests {
         let open = || OutlinesOfOthers::open(folder.path(), None).unwrap();
         assert!(open().is_of("DJI_0005.jpg"));
         assert!(!open().is_of("DJI_0006.jpg"));
+        // Another one, for other photos, in a folder within; and a photo that is a PNG.
+        let of = |photo: &str| {
+            format!(
+                r#"{{"images": [{{"id": 1, "file_name": "{photo}", "width": 4, "height": 4}}], "categories": [], "annotations": []}}"#
+            )
+        };
+        fs::create_dir_all(folder.path().join("annotations")).unwrap();
+        write("annotations/instances_default.json", &of("DJI_0007.png"));
+        write("DJI_0007.png", "a photo");
+        assert!(open().is_of("DJI_0005.jpg") && open().is_of("DJI_0007.png"));
+        assert_eq!(open().of_no_photo(&["DJI_0005.jpg"]), ["DJI_0007.png"]);
         // Beside files of single photos their names count.
         write("DJI_0006_labels.png", "a label image");
         assert!(!open().is_of("DJI_0005.jpg"));
         assert!(open().is_of("DJI_0006.jpg"));
+    }
+
+    /// Cards have folders of their own, with the same names in each: a name alone tells nothing of which photo it is.
+    #[test]
+    fn outlines_of_photos_of_one_name_say_their_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let camera = Camera {
+            name: String::new(),
+            width: 4,
+            height: 4,
+            fx: 4.0,
+            fy: 4.0,
+            cx: 2.0,
+            cy: 2.0,
+            skew: 0.0,
+            distortion: crate::camera::Distortion::None,
+        };
+        let mut image = image::GrayImage::new(4, 4);
+        image.put_pixel(1, 1, image::Luma([1]));
+        let write = |name: &str| {
+            let path = folder.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            image.save(path).unwrap();
+        };
+        let found = |name: &str, namesake: Option<&str>| {
+            let others = OutlinesOfOthers::open(folder.path(), None).unwrap();
+            others.of_photo(name, namesake, &camera, false)
+        };
+        write("A_labels.png");
+        assert!(found("d1/A.jpg", None).is_ok());
+        let fault = found("d1/A.jpg", Some("d2/A.jpg")).unwrap_err();
+        assert!(
+            fault.what.contains("it may be of d1/A.jpg or of d2/A.jpg"),
+            "{fault}"
+        );
+        write("d1/A.png");
+        write("d2_A_labels.png");
+        assert!(found("d1/A.jpg", Some("d2/A.jpg")).is_ok());
+        assert!(found("d2/A.jpg", Some("d1/A.jpg")).is_ok());
+        assert!(found("d3/A.jpg", Some("d1/A.jpg")).is_err());
     }
 }

@@ -159,7 +159,9 @@ impl OpenFlight {
             (SurveyStep::RemoveLast, Some(drawn)) => {
                 drawn.points.pop();
                 drawn.finished = false;
-                if let (true, Some(before)) = (drawn.points.is_empty(), drawn.before.take()) {
+                if drawn.points.is_empty()
+                    && let Some(before) = drawn.before.take()
+                {
                     *drawn = *before;
                     drawn.asked = None;
                 }

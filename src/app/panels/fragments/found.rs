@@ -142,7 +142,10 @@ fn measures(state: &State, open: &OpenFlight, fragment: &Fragment, ui: &mut Ui) 
         ("Inscribed circle", length(world.inscribed)),
         ("Area", area(world.area)),
         ("On the surface", area(world.surface_area)),
-        ("Stands out", length(world.height)),
+        (
+            "Stands out",
+            world.height.map_or_else(|| "–".to_owned(), length),
+        ),
         ("Roundness", significant_digits(world.roundness, 2)),
     ];
     if fragment.is_cut {
