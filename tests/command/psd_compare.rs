@@ -161,6 +161,36 @@ fn files_are_joined_in_the_unit_of_the_first() {
     assert!((shift - 4.0).abs() < 0.01, "{shift}");
 }
 
+/// Two files of one method: on the command line one of them has another name.
+#[test]
+fn files_of_one_method_are_told_apart_by_name() {
+    let table = |factor: f64| -> String {
+        let rows = SIEVE
+            .iter()
+            .map(|[size, p]| format!("masks,{},{p}\n", size * factor));
+        format!(
+            "method,size_mm,percent_passing\n{}",
+            rows.collect::<String>()
+        )
+    };
+    let folder = folder(&[("a.csv", &table(1.0)), ("b=.csv", &table(1.04))]);
+    let (a, b) = (path(&folder, "a.csv"), path(&folder, "b=.csv"));
+    let error = error_of(&[&a, &b]);
+    assert!(error.contains("'masks' is the only method"), "{error}");
+    let found = json(&[&format!("sieve={a}"), &b]);
+    assert_eq!(found["reference"]["method"], "sieve");
+    assert_eq!(found["methods"][0]["method"], "masks");
+    let shift = found["methods"][0]["shift"]["mean_percent"]
+        .as_f64()
+        .expect("a shift");
+    assert!((shift - 4.0).abs() < 0.01, "{shift}");
+    let error = error_of(&[
+        &format!("sieve={a}"),
+        &format!("x={}", path(&folder, "c.csv")),
+    ]);
+    assert!(error.contains("c.csv") && !error.contains("x="), "{error}");
+}
+
 /// Of three photos of a trial the first is half of the area, the others a quarter each: 10, 20 and 60 %
 /// are 25 %; with equal weights 30 %.
 #[test]

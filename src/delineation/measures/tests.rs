@@ -6,6 +6,7 @@ use fragscale_core::camera::{Camera, Distortion, Pose};
 use fragscale_core::jobs::Progress;
 use fragscale_core::scale::{FieldGrid, ImageKind};
 use fragscale_core::surface::{Cloud, Surface};
+use fragscale_core::units::LengthUnit;
 
 use super::*;
 
@@ -134,6 +135,57 @@ fn a_line_does_not_stand_out() {
         let found = measured(&labels, &field(0.0), SieveShape::Circle);
         assert_eq!(found[0].world.unwrap().height, None, "{found:?}");
     }
+}
+
+/// Of people and other tools nothing is claimed below the smallest outline of ten pixels' width, and below that width where there is
+/// none; a line of many pixels is none, either.
+#[test]
+fn the_limit_of_others_is_as_wide_as_an_engines() {
+    let said = |square: f64| {
+        let labels = drawn(|x, y| {
+            let is_in = |at: [f64; 2], half: [f64; 2]| {
+                (x - at[0]).abs() < half[0] && (y - at[1]).abs() < half[1]
+            };
+            u32::from(is_in([100.0, 100.0], [square / 2.0, square / 2.0]))
+                + 2 * u32::from(is_in([200.0, 300.5], [55.0, 0.6]))
+                + 3 * u32::from(is_in([300.0, 100.0], [2.0, 2.0]))
+        });
+        let field = field(0.0);
+        let photo =
+            crate::photo::fragments(&labels, &field, SieveShape::Circle, None, LengthUnit::Metre);
+        (photo.limit, photo.notes(&labels))
+    };
+    let (limit, notes) = said(30.0);
+    close(limit, (4.0 / PI).sqrt() * 30.0 / 125.0, 1e-6);
+    // The line's circle is as large as that of ten pixels: below the limit, but not the limit.
+    assert!(
+        notes[0].starts_with("2 outlines of less than 10 pixels across"),
+        "{notes:?}"
+    );
+    let (limit, notes) = said(8.0);
+    close(limit, 10.0 / 125.0, 1e-6);
+    assert!(
+        notes[0].starts_with("3 outlines of less than 10 pixels across"),
+        "{notes:?}"
+    );
+}
+
+/// What lies over a hole of the surface is said.
+#[test]
+fn what_is_beside_the_surface_is_said() {
+    let points = [[-9.0, -9.0], [0.0, -9.0], [0.0, 9.0], [-9.0, 9.0]];
+    let field = field_of(points.map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec());
+    let labels = drawn(|x, y| {
+        let at = |middle: f64| (x - middle).abs() < 20.0 && (y - 200.0).abs() < 20.0;
+        u32::from(at(100.0)) + 2 * u32::from(at(300.0))
+    });
+    let photo =
+        crate::photo::fragments(&labels, &field, SieveShape::Circle, None, LengthUnit::Metre);
+    let notes = photo.notes(&labels);
+    assert!(
+        notes[0].starts_with("1 outline of which too little lies on the surface"),
+        "{notes:?}"
+    );
 }
 
 /// A spike of one point, a metre high, over three of a hundred parts of a level square: the square stands out by nothing.

@@ -53,29 +53,34 @@ impl Piece {
     }
 }
 
-/// Takes off what reaches all four edges of the photo, and says so: what lies behind the stones has a number in some programs'
-/// label images, and an outline of its own in others' files. A stone that is larger than the photo could not be measured either.
+/// Takes off what reaches all four edges of the photo in one piece, and says so: what lies behind the stones has a number in some
+/// programs' label images, and an outline of its own in others' files. A stone that is larger than the photo could not be measured
+/// either.
 pub(super) fn take_off_behind(labels: &mut LabelImage, notes: &mut Notes) {
+    let (part_of, label_of) = labels.parts();
     let (width, height) = (labels.width, labels.height);
-    let row = |row: usize| &labels.labels[row * width..(row + 1) * width];
-    let column = |column: usize| labels.labels.iter().skip(column).step_by(width.max(1));
-    if width < 2 || height < 2 {
-        return;
+    let mut reached = vec![[false; 4]; label_of.len()];
+    for (place, part) in part_of.iter().enumerate() {
+        let (column, row) = (place % width, place / width);
+        let at = [
+            row == 0,
+            row + 1 == height,
+            column == 0,
+            column + 1 == width,
+        ];
+        let of_part = &mut reached[*part as usize];
+        *of_part = std::array::from_fn(|edge| of_part[edge] || at[edge]);
     }
-    let is_fragment = |label: &u32| *label != FINES && *label != NOT_ROCK;
-    let of = |edge: &mut dyn Iterator<Item = &u32>| -> BTreeSet<u32> {
-        edge.copied().filter(is_fragment).collect()
-    };
-    let mut behind = of(&mut row(0).iter());
-    for other in [
-        of(&mut row(height - 1).iter()),
-        of(&mut column(0)),
-        of(&mut column(width - 1)),
-    ] {
-        behind.retain(|label| other.contains(label));
-    }
-    for number in &behind {
-        let pixels = labels.labels.iter_mut().filter(|label| *label == number);
+    let reached = label_of
+        .iter()
+        .zip(&reached)
+        .filter(|(_, edges)| **edges == [true; 4]);
+    let behind: BTreeSet<u32> = reached.map(|(label, _)| *label).collect();
+    for number in behind
+        .into_iter()
+        .filter(|label| *label != FINES && *label != NOT_ROCK)
+    {
+        let pixels = labels.labels.iter_mut().filter(|label| **label == number);
         let count = pixels.map(|label| *label = FINES).count();
         let share = 100.0 * count as f64 / (width * height) as f64;
         notes.say(format!(

@@ -60,6 +60,29 @@ fn regions_of_a_mask_are_fragments() {
     assert!(empty.labels.labels.iter().all(|label| *label == FINES));
 }
 
+/// Some programs give what lies between the stones a number, too: 1 here, and 2 where all stones have the same.
+#[test]
+fn what_lies_between_is_no_fragment() {
+    let between = [1, 1, 1, 1, 1, 5, 6, 1, 1, 1, 1, 1];
+    let masks = of_bytes(&gray_16(between)).unwrap();
+    assert_eq!(masks.labels.labels, [0, 0, 0, 0, 0, 5, 6, 0, 0, 0, 0, 0]);
+    assert!(
+        masks.notes[0]
+            .starts_with("fragment 1 reaches all four edges of the photo, over 83 % of it"),
+        "{:?}",
+        masks.notes
+    );
+    let classes = [2, 2, 2, 2, 1, 2, 1, 2, 2, 2, 2, 2];
+    let masks = of_bytes(&gray_16(classes)).unwrap();
+    assert_eq!(masks.labels.labels, [0, 0, 0, 0, 1, 0, 2, 0, 0, 0, 0, 0]);
+    // Stones at all edges have one number in a mask, and are stones.
+    let mask = [9, 0, 9, 9, 0, 0, 0, 0, 9, 9, 0, 9];
+    assert_eq!(of_bytes(&gray_16(mask)).unwrap().labels.fragments(), 4);
+    // Ours are what they say.
+    let own = of_bytes(&crate::files::marked_png(gray_16(between))).unwrap();
+    assert_eq!(own.labels.labels, between.map(u32::from));
+}
+
 /// Numbers that fragments share, as in 8 bits, are of no fragment; a few pieces behind other stones are.
 #[test]
 fn numbers_that_many_regions_share_are_refused() {

@@ -95,21 +95,56 @@ fn polygons_of_coco_are_filled_at_middles() {
 /// The smaller lies on top, whichever comes first.
 #[test]
 fn small_stones_lie_on_large_ones() {
-    let large = annotation(1, "[[0,0,4,0,4,3,0,3]]");
+    let large = annotation(1, "[[0,0,3,0,3,3,0,3]]");
     let small = annotation(1, "[[1,1,3,1,3,2,1,2]]");
     assert_eq!(
         labels(&coco(&format!("{large},{small}"))),
-        [1, 1, 1, 1, 1, 2, 2, 1, 1, 1, 1, 1]
+        [1, 1, 1, 0, 1, 2, 2, 0, 1, 1, 1, 0]
     );
     assert_eq!(
         labels(&coco(&format!("{small},{large}"))),
-        [2, 2, 2, 2, 2, 1, 1, 2, 2, 2, 2, 2]
+        [2, 2, 2, 0, 2, 1, 1, 0, 2, 2, 2, 0]
+    );
+    // What is about all of the photo is no stone.
+    let all = annotation(1, "[[0,0,4,0,4,3,0,3]]");
+    let masks = of(&coco(&format!("{small},{all}")));
+    assert_eq!(masks.labels.labels, [0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0]);
+    assert_eq!(
+        masks.notes[1],
+        "fragment 2 reaches all four edges of the photo, over 83 % of it: it is taken for what lies between the others, and for none"
     );
     let masks = of(&coco(&format!("{small},{small}")));
     assert_eq!(
         masks.notes[1],
         "an outline is hidden below smaller ones and left out (annotation 5)"
     );
+}
+
+/// A class that may be none of rock is named; what is known for none is none.
+#[test]
+fn odd_classes_of_fragments_are_said() {
+    let square = annotation(1, "[[1,0,3,0,3,2,1,2]]");
+    let of_class = |class: &str| of(&coco(&square).replace("\"rock\"", &format!("\"{class}\"")));
+    for class in ["rock", "Stones", "boulder 12", "Fragment_3", ""] {
+        let masks = of_class(class);
+        assert!(masks.notes.is_empty(), "{class}: {:?}", masks.notes);
+        assert_eq!(masks.labels.fragments(), 1, "{class}");
+    }
+    let masks = of_class("floor");
+    assert_eq!(masks.labels.fragments(), 1);
+    assert_eq!(
+        masks.notes,
+        [
+            "outlines of the class floor are taken for fragments: call what is no rock 'not rock', what is fine 'fines'"
+        ]
+    );
+    for class in ["Grass", "people", "excavator", "Scale bar", "bg"] {
+        assert_eq!(of_class(class).labels.labels[1], NOT_ROCK, "{class}");
+    }
+    // Maps write their keys in capitals.
+    let feature = r#"{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"Class": "Fines"},
+        "geometry": {"type": "Polygon", "coordinates": [[[1, 0], [3, 0], [3, 2], [1, 2], [1, 0]]]}}]}"#;
+    assert_eq!(of(feature).labels.fragments(), 0);
 }
 
 #[test]
