@@ -1,6 +1,7 @@
 //! JSON of outlines, told by its keys: COCO has `images` and `annotations`, LabelMe `shapes`, GeoJSON `features`.
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use super::outline::OutlinedImage;
@@ -27,8 +28,17 @@ struct Document {
     crs: Value,
     /// The photo of a GeoJSON of ours.
     photo: Option<String>,
-    /// What the positions of a GeoJSON of ours are, where they are not pixels.
-    coordinates: Option<String>,
+    /// What the positions of a GeoJSON of ours are, where they are not pixels; or those of a geometry alone.
+    coordinates: Option<Coordinates>,
+    /// Of a feature alone.
+    geometry: Option<IgnoredAny>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Coordinates {
+    Words(String),
+    Numbers(IgnoredAny),
 }
 
 /// The images of a text; whether it is of one image, which need not be named.
@@ -43,7 +53,7 @@ pub(super) fn read(text: &[u8], is_own: bool) -> Result<(Vec<OutlinedImage>, boo
         return Ok((vec![image], true));
     }
     if let Some(features) = document.features {
-        if let Some(coordinates) = document.coordinates.filter(|_| is_own) {
+        if let Some(Coordinates::Words(coordinates)) = document.coordinates.filter(|_| is_own) {
             let what = format!("its places are {coordinates}");
             let remedy =
                 "give the label image beside it, or outlines in pixels (delineate --also geojson)";
@@ -57,6 +67,10 @@ pub(super) fn read(text: &[u8], is_own: bool) -> Result<(Vec<OutlinedImage>, boo
             let images = coco::images(images, document.categories, annotations)?;
             Ok((images, false))
         }
+        (None, None) if document.geometry.is_some() || is_geometry(&document.coordinates) => {
+            let what = "it is one feature or geometry of GeoJSON alone, in no list of features";
+            Err(Fault::new(what, "export it as a FeatureCollection"))
+        }
         (None, None) => Err(Fault::new("it is JSON without outlines", KNOWN)),
         (None, Some(_)) => Err(Fault::new(
             "it is COCO without \"images\"",
@@ -67,4 +81,8 @@ pub(super) fn read(text: &[u8], is_own: bool) -> Result<(Vec<OutlinedImage>, boo
             "export it with its annotations",
         )),
     }
+}
+
+fn is_geometry(coordinates: &Option<Coordinates>) -> bool {
+    matches!(coordinates, Some(Coordinates::Numbers(_)))
 }

@@ -207,7 +207,10 @@ fn named<'a>(images: &'a [OutlinedImage], photo: &str) -> Result<&'a OutlinedIma
             [image] => return Ok(image),
             [one, other, ..] => {
                 let name = |image: &OutlinedImage| image.name.clone().unwrap_or_default();
-                let what = format!("{photo} may be {} or {} in it", name(one), name(other));
+                let what = match name(one) == name(other) {
+                    true => format!("two of its images are called {}", name(one)),
+                    false => format!("{photo} may be {} or {} in it", name(one), name(other)),
+                };
                 return Err(Fault::new(
                     what,
                     "give the outlines of this photo in a file of its own",

@@ -261,6 +261,16 @@ fn photos_are_chosen_by_their_names() {
 }
 
 #[test]
+fn a_geometry_alone_is_no_list() {
+    let geometry = r#"{"type": "Polygon", "coordinates": [[[1, 0], [3, 0], [3, 2]]]}"#;
+    let feature = format!(r#"{{"type": "Feature", "properties": {{}}, "geometry": {geometry}}}"#);
+    for text in [geometry, &feature] {
+        let fault = refused(text);
+        assert!(fault.what.contains("in no list of features"), "{fault}");
+    }
+}
+
+#[test]
 fn what_is_no_file_of_outlines_is_said() {
     let cut = coco(&annotation(1, PLAIN));
     let cut = &cut[..cut.len() - 5];
