@@ -139,7 +139,7 @@ mod tests {
         let mut odd = ball(0.1 + 0.2, 3.7, true);
         odd.number = 70_000;
         if let Some(world) = &mut odd.world {
-            world.height = f64::NEG_INFINITY;
+            world.height = None;
             world.place = DVec3::new(452_310.123_456_789, -1e-300, 0.0);
         }
         let mut nowhere = ball(2.0, 1.0, false);
