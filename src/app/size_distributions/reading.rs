@@ -176,14 +176,14 @@ impl State {
                 self.say(Severity::Error, &why);
             }
             Read::Pasted(Ok(source)) => {
+                let name = source.name.clone();
                 if self.add_source(source) {
                     self.asking = None;
                     let unit = self.distributions.paste.unit;
                     self.distributions.pasted += 1;
                     // What was wrong with it before is mended; the log keeps it.
-                    let refused = self.distributions.paste.refused.take();
-                    let is_it = |notice: &LogLine| Some(&notice.text) == refused.as_ref();
-                    self.notice.take_if(|notice| is_it(notice));
+                    let is_it = |notice: &mut LogLine| notice.text.starts_with(&name);
+                    self.notice.take_if(is_it);
                     self.distributions.paste = PasteForm {
                         unit,
                         ..PasteForm::default()
