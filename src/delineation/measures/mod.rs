@@ -264,7 +264,8 @@ impl Plane {
             vh += b * h;
         }
         let determinant = uu * vv - uv * uv;
-        if determinant <= 1e-12 * uu * vv {
+        // All on a line.
+        if determinant <= 1e-9 * (uu + vv).powi(2) {
             return None;
         }
         let (a, b) = (

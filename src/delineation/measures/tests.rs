@@ -165,7 +165,7 @@ fn the_limit_of_others_is_as_wide_as_an_engines() {
     let (limit, notes) = said(8.0);
     close(limit, 10.0 / 125.0, 1e-6);
     assert!(
-        notes[0].starts_with("3 outlines of less than 10 pixels across"),
+        notes[0].starts_with("2 outlines of less than 10 pixels across"),
         "{notes:?}"
     );
 }
