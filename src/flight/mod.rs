@@ -194,11 +194,13 @@ pub struct FlightParts {
     pub as_read: AsRead,
 }
 
-/// What the files of a flight say of all its photos, and no number of theirs shows.
+/// What the files of a flight say of its photos, and no number of theirs shows.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AsRead {
     /// What speaks against every photo, the gravest first. It is said where it is read.
     pub doubts: Vec<Doubt>,
+    /// What speaks against single ones, by their index.
+    pub of_photos: Vec<(usize, Doubt)>,
     /// How far the points of the surface may be off because they were written as 32-bit floats, world
     /// units; 0 where that is nothing beside the surface's size.
     pub rounding: f64,

@@ -2,9 +2,10 @@
 //! where they stand, what their files say of themselves, whose size nobody has seen, whose colours are
 //! not those of the surface. Reviews are made of it, and every front end asks here.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
+use std::path::Path;
 
-use crate::fault::Fault;
+use crate::fault::{Fault, first_names};
 use crate::flight::{ColoursFound, Doubt, Evidence, Flight, LookedUp, PhotoFileState, Review};
 use crate::jobs::Progress;
 use crate::photo_checks::photo_checks;
@@ -36,17 +37,29 @@ pub fn look_up(flight: &Flight, files: &[PhotoFile]) -> LookedUp {
     for evidence in &mut evidence {
         evidence.doubts.clone_from(&of_all);
     }
+    let (of_files, metadata) = photo_checks(flight, files);
+    let (of_single, of_files): (Vec<_>, Vec<_>) = of_files
+        .into_iter()
+        .partition(|(doubt, _)| matches!(doubt, Doubt::OtherPlace { .. }));
+    let of_single = of_single
+        .into_iter()
+        .flat_map(|(doubt, photos)| photos.into_iter().map(move |photo| (photo, doubt.clone())));
+    let of_photos = parts.as_read.of_photos.iter().cloned();
+    let of_photos = of_photos
+        .chain(shared_files(flight, files))
+        .chain(of_single);
+    let of_photos: Vec<(usize, Doubt)> = of_photos.collect();
+    warnings.extend(in_words(flight, &of_photos));
     warnings.extend(doubt_sizes(flight, files, &mut evidence));
     let placement = flight.placement();
     warnings.extend(placement.warnings(flight));
     let of_places = placement.doubts(parts.unit);
-    let (of_files, metadata) = photo_checks(flight, files);
     warnings.extend(of_files.iter().map(|(doubt, _)| doubt.to_string()));
     let of_files = of_files.into_iter().flat_map(|(doubt, photos)| {
         let each = photos.into_iter();
         each.map(move |photo| (photo, doubt.clone()))
     });
-    for (photo, doubt) in of_places.chain(of_files) {
+    for (photo, doubt) in of_photos.into_iter().chain(of_places).chain(of_files) {
         if let Some(evidence) = evidence.get_mut(photo) {
             evidence.doubts.push(doubt);
         }
@@ -56,6 +69,50 @@ pub fn look_up(flight: &Flight, files: &[PhotoFile]) -> LookedUp {
         warnings,
         metadata,
     }
+}
+
+/// What speaks against single photos, the same of many in a sentence.
+fn in_words(flight: &Flight, of_photos: &[(usize, Doubt)]) -> Vec<String> {
+    let photos = &flight.parts().photos;
+    let said = of_photos
+        .iter()
+        .filter_map(|(photo, doubt)| Some((photos.get(*photo)?.name.as_str(), doubt)));
+    let mut kinds: Vec<(&'static str, Vec<&str>, String)> = Vec::new();
+    for (name, doubt) in said {
+        match kinds.iter_mut().find(|(kind, ..)| *kind == doubt.kind()) {
+            Some((_, names, _)) => names.push(name),
+            None => kinds.push((doubt.kind(), vec![name], doubt.to_string())),
+        }
+    }
+    let sentence = |(_, names, first): (&str, Vec<&str>, String)| match names.len() {
+        1 => format!("{}: {first}", names[0]),
+        count => format!("{count} photos ({}): {first}", first_names(names)),
+    };
+    kinds.into_iter().map(sentence).collect()
+}
+
+/// Photos that have their file in common: of those in two folders one's is missing, and the other's was found in its place. Whose
+/// name with its folder is the file's is not doubted.
+fn shared_files(flight: &Flight, files: &[PhotoFile]) -> Vec<(usize, Doubt)> {
+    let photos = &flight.parts().photos;
+    let mut of_path: BTreeMap<&Path, Vec<usize>> = BTreeMap::new();
+    for (photo, file) in files.iter().enumerate().take(photos.len()) {
+        if let Some(path) = file.path.as_deref() {
+            of_path.entry(path).or_default().push(photo);
+        }
+    }
+    let mut doubts = Vec::new();
+    for (path, sharing) in of_path {
+        let is_its = |photo: usize| path.ends_with(photos[photo].name.replace('\\', "/"));
+        for &photo in &sharing {
+            let other = sharing.iter().find(|other| **other != photo);
+            if let Some(&other) = other.filter(|other| !is_its(photo) || is_its(**other)) {
+                let other = photos[other].name.clone();
+                doubts.push((photo, Doubt::SameFile { other }));
+            }
+        }
+    }
+    doubts
 }
 
 /// Doubts scales for images that nobody may have: of photos whose files are not there, while the

@@ -79,6 +79,8 @@ impl Remedy {
             | Doubt::NoPhotoFolder { .. }
             | Doubt::ReducedPhotos { .. }
             | Doubt::FileSize { .. }
+            | Doubt::SolvedOnOther { .. }
+            | Doubt::SameFile { .. }
             | Doubt::FileUnreadable(_) => Some(Self::AddPhotos),
             Doubt::FarFromSurface { .. }
             | Doubt::OffSurface(_)
@@ -374,8 +376,13 @@ fn files_found(review: &Review) -> usize {
 
 fn photos(review: &Review) -> HealthFinding {
     let (found, count) = (files_found(review), review.count());
-    let is_of_size = |doubt: &Doubt| matches!(doubt, Doubt::FileSize { .. });
-    let (other_size, reason) = doubted(review, is_of_size);
+    let is_of_file = |doubt: &Doubt| {
+        matches!(
+            doubt,
+            Doubt::FileSize { .. } | Doubt::SolvedOnOther { .. } | Doubt::SameFile { .. }
+        )
+    };
+    let (other_size, reason) = doubted(review, is_of_file);
     let short = format!("{found} of {count}");
     let (health, says) = match found == count && count > 0 {
         true if other_size > 0 => (

@@ -8,6 +8,7 @@
 //!   take-off. A deviation over 5 % is said where the take-off would lie outside the levels of the
 //!   surface: a drone that rises from a quarry's floor is less high above the pile.
 //! - The distance: to the surface in the middle of the photo against the drone's laser.
+//! - The place: a photo's own receiver against its pose, where the photos' others fit theirs: two photos have changed their names.
 //!
 //! Only the headers of the files are read, of [`MOST_PHOTOS`] photos at most.
 
@@ -17,6 +18,7 @@ use glam::{DVec2, DVec3};
 
 use crate::flight::{Doubt, Flight, MetadataRead, Photo};
 use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
+use crate::geodesy::Crs;
 use crate::geometry::{Ray, median};
 use crate::photo_files::PhotoFile;
 
@@ -29,6 +31,12 @@ const WORTH_SAYING: f64 = 0.05;
 /// The lowest flight, in metres, whose heights are compared: below it the barometer's own error is
 /// beyond 5 %.
 const LOWEST: f64 = 10.0;
+
+/// So many photos say where most are.
+const LEAST_PLACES: usize = 5;
+/// Receivers of drones are rarely so far off, metres; where most are worse, so many times as far.
+const ELSEWHERE: f64 = 12.0;
+const ELSEWHERE_OF_USUAL: f64 = 6.0;
 
 /// A finding and the photos that it speaks against, by their index.
 pub(crate) type Finding = (Doubt, Vec<usize>);
@@ -60,6 +68,7 @@ pub(crate) fn photo_checks(flight: &Flight, files: &[PhotoFile]) -> (Vec<Finding
         return (findings, metadata);
     }
     findings.extend(check_distances(flight, &described));
+    findings.extend(check_places(flight, &described));
     (findings, metadata)
 }
 
@@ -181,6 +190,37 @@ fn check_distances(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding>
         findings.push((Doubt::LaserRange { distance, stated }, all));
     }
     findings
+}
+
+/// Photos whose receivers were elsewhere than their poses. What all are off, by another datum or a false origin, is not counted.
+fn check_places(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding> {
+    let parts = flight.parts();
+    let system = parts.as_read.system.as_ref();
+    let Some(crs) = system.and_then(|system| Crs::understand(&system.name).ok()) else {
+        return Vec::new();
+    };
+    let metres = parts.unit.metres();
+    let off = described.iter().filter_map(|(index, photo, metadata)| {
+        let place = crs.from_geographic(metadata.place?.place)?.truncate();
+        Some((*index, (place - photo.pose.center.truncate()) * metres))
+    });
+    let off: Vec<(usize, DVec2)> = off.collect();
+    let along = |axis: usize| median(&mut off.iter().map(|(_, off)| off[axis]).collect::<Vec<_>>());
+    let (true, Some(x), Some(y)) = (off.len() >= LEAST_PLACES, along(0), along(1)) else {
+        return Vec::new();
+    };
+    let off: Vec<(usize, f64)> = off
+        .into_iter()
+        .map(|(index, off)| (index, off.distance(DVec2::new(x, y))))
+        .collect();
+    let Some(usual) = median(&mut off.iter().map(|(_, off)| *off).collect::<Vec<_>>()) else {
+        return Vec::new();
+    };
+    let is_elsewhere = |(_, off): &(usize, f64)| *off > ELSEWHERE.max(ELSEWHERE_OF_USUAL * usual);
+    let elsewhere = off.into_iter().filter(is_elsewhere);
+    elsewhere
+        .map(|(index, distance)| (Doubt::OtherPlace { distance, usual }, vec![index]))
+        .collect()
 }
 
 /// Whether the surface has the median of these levels, give or take `slack`; all in world units.

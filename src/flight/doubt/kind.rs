@@ -4,7 +4,7 @@
 use super::Doubt;
 
 /// All words.
-const KINDS: [&str; 32] = [
+const KINDS: [&str; 36] = [
     "no-scale",
     "off-surface",
     "no-point",
@@ -27,6 +27,10 @@ const KINDS: [&str; 32] = [
     "reduced-photos",
     "file-unreadable",
     "file-size",
+    "solved-on-other",
+    "off-its-points",
+    "same-file",
+    "other-place",
     "far-from-surface",
     "under-surface",
     "strange-camera",
@@ -77,6 +81,10 @@ impl Doubt {
             Self::ReducedPhotos { .. } => "reduced-photos",
             Self::FileUnreadable(_) => "file-unreadable",
             Self::FileSize { .. } => "file-size",
+            Self::SolvedOnOther { .. } => "solved-on-other",
+            Self::OffItsPoints { .. } => "off-its-points",
+            Self::SameFile { .. } => "same-file",
+            Self::OtherPlace { .. } => "other-place",
             Self::FarFromSurface { .. } => "far-from-surface",
             Self::UnderSurface => "under-surface",
             Self::StrangeCamera { .. } => "strange-camera",

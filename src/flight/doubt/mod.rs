@@ -144,6 +144,34 @@ pub enum Doubt {
         /// Of the camera.
         camera: (u32, u32),
     },
+    /// The image points that the package found are not those of a photo of this size.
+    SolvedOnOther {
+        /// Of the photo, pixels.
+        size: (u32, u32),
+        /// Over how much of a photo the points reach, pixels, around its middle.
+        reach: (u32, u32),
+    },
+    /// The package's points do not project to where its image points say that the photo shows them.
+    OffItsPoints {
+        /// The median distance, pixels.
+        pixels: f64,
+        /// Pixels.
+        limit: f64,
+        /// Of so many.
+        points: usize,
+    },
+    /// The photo's file is another photo's, too.
+    SameFile {
+        /// The other one, as the flight calls it.
+        other: String,
+    },
+    /// The photo's file was taken somewhere else than the pose says, while others fit theirs.
+    OtherPlace {
+        /// Metres from there.
+        distance: f64,
+        /// The median of all photos, metres.
+        usual: f64,
+    },
     /// The camera is so far from the surface that the two are in different coordinate systems.
     FarFromSurface {
         /// World units.
@@ -229,7 +257,10 @@ impl Doubt {
     pub fn is_of_the_number(&self) -> bool {
         matches!(
             self,
-            Self::UnitUnknown | Self::UnitNotSystems { .. } | Self::ReducedPhotos { .. }
+            Self::UnitUnknown
+                | Self::UnitNotSystems { .. }
+                | Self::ReducedPhotos { .. }
+                | Self::SolvedOnOther { .. }
         )
     }
 
@@ -408,6 +439,32 @@ impl fmt::Display for Doubt {
                 f,
                 "the photo file has {} x {} pixels, its camera {} x {}",
                 file.0, file.1, camera.0, camera.1
+            ),
+            Self::SolvedOnOther {
+                size: (w, h),
+                reach: (rw, rh),
+            } => write!(
+                f,
+                "the package's image points reach over {rw} x {rh} px, and the photo has {w} x {h}: the model was solved on photos of another size, for which its scale is"
+            ),
+            Self::OffItsPoints {
+                pixels,
+                limit,
+                points,
+            } => {
+                let (pixels, limit) = apart(*pixels, *limit, 1);
+                write!(
+                    f,
+                    "the package's points lie {pixels} px (median of {points}, more than {limit}) off where it says that the photo shows them: its pose, focal length or lens is not the one that was solved"
+                )
+            }
+            Self::SameFile { other } => write!(
+                f,
+                "its file is that of {other}, too: a folder of one of them is missing, or a name stands twice"
+            ),
+            Self::OtherPlace { distance, usual } => write!(
+                f,
+                "its file says that it was taken {distance:.0} m from where its pose stands, and most others fit theirs to {usual:.1} m: check whether it is this photo"
             ),
             Self::FarFromSurface {
                 distance,

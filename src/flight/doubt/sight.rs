@@ -86,6 +86,10 @@ impl Doubt {
             | Self::ReducedPhotos { .. }
             | Self::FileUnreadable(_)
             | Self::FileSize { .. }
+            | Self::SolvedOnOther { .. }
+            | Self::OffItsPoints { .. }
+            | Self::SameFile { .. }
+            | Self::OtherPlace { .. }
             | Self::StrangeCamera { .. }
             | Self::SeveralDevices { .. }
             | Self::OtherDevice { .. }

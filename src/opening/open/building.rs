@@ -31,6 +31,7 @@ pub(super) fn build(
 ) -> Result<Opened, FileError> {
     let as_read = AsRead {
         doubts: std::mem::take(&mut source.doubts),
+        of_photos: std::mem::take(&mut source.photo_doubts),
         rounding: framed.cloud.rounding,
         system: lengths::system_of(&framed),
     };

@@ -15,6 +15,7 @@
 mod building;
 mod cameras;
 mod framing;
+mod image_points;
 mod lengths;
 mod placing;
 mod reading;

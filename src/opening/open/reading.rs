@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::cameras;
 use super::source::{Source, name_of};
 use super::{FlightReconstruction, OpenOptions};
+use super::{cameras, image_points};
 use crate::dropped::no_flight_but_mission;
 use crate::fault::Fault;
 use crate::files::{FileError, read_text};
@@ -230,7 +230,13 @@ fn take_reconstruction(
     let preferred = reconstruction.preferred_crs.as_deref();
     // One that is not understood cannot be a target; nothing else depends on it.
     source.preferred_crs = preferred.and_then(|crs| Crs::understand(crs).ok());
+    let sizes = reconstruction.sizes;
     cameras::take_sizes(source, path, &mut reconstruction, entries)?;
+    source.photo_doubts = match source.poses_frame.has_lengths() {
+        true => image_points::doubts(&reconstruction, sizes),
+        // Poses in degrees are none to project with.
+        false => Vec::new(),
+    };
     let photos = reconstruction.photos.iter();
     let named = photos.map(|photo| {
         // The size that the package solved on is none beside it.

@@ -66,6 +66,8 @@ pub(super) struct Source {
     pub(super) warnings: Vec<String>,
     /// What speaks against all photos.
     pub(super) doubts: Vec<Doubt>,
+    /// What speaks against single ones, by their index.
+    pub(super) photo_doubts: Vec<(usize, Doubt)>,
 }
 
 impl Source {
@@ -104,6 +106,7 @@ impl Source {
             photos: Vec::new(),
             warnings: Vec::new(),
             doubts: Vec::new(),
+            photo_doubts: Vec::new(),
         }
     }
 

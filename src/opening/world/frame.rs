@@ -147,6 +147,11 @@ impl WorldFrame {
         matches!(&self, Self::Named(crs) if crs.kind() == CrsKind::Projected).then_some(self)
     }
 
+    /// Whether its numbers are lengths, and no degrees.
+    pub(crate) fn has_lengths(&self) -> bool {
+        !self.is(CrsKind::Geographic)
+    }
+
     pub(super) fn is(&self, kind: CrsKind) -> bool {
         matches!(self, Self::Named(crs) if crs.kind() == kind)
     }
