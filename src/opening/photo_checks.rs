@@ -32,11 +32,11 @@ const WORTH_SAYING: f64 = 0.05;
 /// beyond 5 %.
 const LOWEST: f64 = 10.0;
 
-/// So many photos say where most are.
-const LEAST_PLACES: usize = 5;
-/// Receivers of drones are rarely so far off, metres; where most are worse, so many times as far.
+/// So many photos say where most are: of two that have changed their names one is off as far as the other, the other way.
+const LEAST_PLACES: usize = 3;
+/// Receivers of drones are rarely so far off, metres; where the better ones are worse, so many times as far as a quarter of them.
 const ELSEWHERE: f64 = 12.0;
-const ELSEWHERE_OF_USUAL: f64 = 6.0;
+const ELSEWHERE_OF_BETTER: f64 = 8.0;
 
 /// A finding and the photos that it speaks against, by their index.
 pub(crate) type Finding = (Doubt, Vec<usize>);
@@ -213,11 +213,12 @@ fn check_places(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding> {
         .into_iter()
         .map(|(index, off)| (index, off.distance(DVec2::new(x, y))))
         .collect();
-    let Some(usual) = median(&mut off.iter().map(|(_, off)| *off).collect::<Vec<_>>()) else {
-        return Vec::new();
-    };
-    let is_elsewhere = |(_, off): &(usize, f64)| *off > ELSEWHERE.max(ELSEWHERE_OF_USUAL * usual);
-    let elsewhere = off.into_iter().filter(is_elsewhere);
+    let mut sorted: Vec<f64> = off.iter().map(|(_, off)| *off).collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let limit = ELSEWHERE.max(ELSEWHERE_OF_BETTER * sorted[(sorted.len() - 1) / 4]);
+    let fitting = sorted.partition_point(|off| *off <= limit);
+    let usual = median(&mut sorted[..fitting]).unwrap_or_default();
+    let elsewhere = off.into_iter().filter(|(_, off)| *off > limit);
     elsewhere
         .map(|(index, distance)| (Doubt::OtherPlace { distance, usual }, vec![index]))
         .collect()

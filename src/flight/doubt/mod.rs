@@ -169,7 +169,7 @@ pub enum Doubt {
     OtherPlace {
         /// Metres from there.
         distance: f64,
-        /// The median of all photos, metres.
+        /// The median of those that fit, metres.
         usual: f64,
     },
     /// The camera is so far from the surface that the two are in different coordinate systems.
@@ -464,7 +464,7 @@ impl fmt::Display for Doubt {
             ),
             Self::OtherPlace { distance, usual } => write!(
                 f,
-                "its file says that it was taken {distance:.0} m from where its pose stands, and most others fit theirs to {usual:.1} m: check whether it is this photo"
+                "its file says that it was taken {distance:.0} m from where its pose stands, and the others fit theirs to {usual:.1} m: check whether it is this photo"
             ),
             Self::FarFromSurface {
                 distance,

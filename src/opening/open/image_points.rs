@@ -34,7 +34,10 @@ pub(super) fn doubts(model: &Reconstruction, sizes: Sizes) -> Vec<(usize, Doubt)
         } => of_another_size(model),
         Sizes::Known | Sizes::PerhapsReduced => Vec::new(),
     };
-    doubts.extend(off_theirs(model));
+    // Of another size points lie off, too.
+    let is_new = |(photo, _): &(usize, Doubt)| !doubts.iter().any(|(other, _)| other == photo);
+    let off: Vec<(usize, Doubt)> = off_theirs(model).into_iter().filter(is_new).collect();
+    doubts.extend(off);
     doubts
 }
 
@@ -124,4 +127,102 @@ fn reach(points: &[DVec2]) -> DVec2 {
             .unwrap_or_default()
     };
     DVec2::new(of(|at| at.x), of(|at| at.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::covariance::tests::model;
+
+    const IN_PIXELS: Sizes = Sizes::Unknown {
+        unit: ImageUnit::Pixel,
+        principal_points_from: Origin::Middle,
+    };
+
+    /// The model with points all over its photos, as a package writes them that knows no sizes: from the middle.
+    fn from_the_middle() -> Reconstruction {
+        let mut model = model();
+        model.sizes = Sizes::Known;
+        let all_over = (0..400_u32).map(|place| Observation {
+            photo: place % 5,
+            point: place % 40,
+            pixel: DVec2::new(f64::from(place % 20) + 0.5, f64::from(place / 20) + 0.5)
+                * DVec2::new(64.0, 36.0),
+        });
+        model.observations = all_over.collect();
+        for seen in &mut model.observations {
+            seen.pixel -= DVec2::new(640.0, 360.0);
+        }
+        model.observed_from = Origin::Middle;
+        model
+    }
+
+    fn kinds(doubts: &[(usize, Doubt)]) -> Vec<(usize, &'static str)> {
+        let kinds = doubts.iter().map(|(photo, doubt)| (*photo, doubt.kind()));
+        kinds.collect()
+    }
+
+    /// Half as large, or twice: the points of a package that writes no sizes say it.
+    #[test]
+    fn photos_that_were_resized() {
+        let mut model = from_the_middle();
+        assert_eq!(of_another_size(&model), Vec::new());
+        for (size, is_other) in [
+            ((640, 360), true),
+            ((2560, 1440), true),
+            ((1270, 714), false),
+        ] {
+            (model.cameras[0].width, model.cameras[0].height) = size;
+            let doubts = doubts(&model, IN_PIXELS);
+            let of_size = kinds(&doubts)
+                .into_iter()
+                .filter(|(_, kind)| *kind == "solved-on-other");
+            assert_eq!(of_size.count(), if is_other { 5 } else { 0 }, "{size:?}");
+            if let (true, (_, Doubt::SolvedOnOther { reach, .. })) = (is_other, &doubts[0]) {
+                // 19 of 20 columns lie so far apart.
+                assert_eq!(*reach, (1216, 684));
+            }
+            // It is said once of each photo.
+            assert!(doubts.len() <= 5, "{doubts:?}");
+        }
+        // Who knows its sizes was scaled with them.
+        (model.cameras[0].width, model.cameras[0].height) = (640, 360);
+        assert!(
+            kinds(&doubts(&model, Sizes::Known))
+                .iter()
+                .all(|(_, kind)| *kind == "off-its-points")
+        );
+    }
+
+    /// Points that are 0.8 px off are those of the solution; with a focal length that is 3 % longer they are not.
+    #[test]
+    fn what_was_solved_fits_its_points() {
+        let mut model = model();
+        model.sizes = Sizes::Known;
+        assert_eq!(doubts(&model, Sizes::Known), Vec::new());
+        for length in [&mut model.cameras[0].fx, &mut model.cameras[0].fy] {
+            *length *= 1.03;
+        }
+        let found = doubts(&model, Sizes::Known);
+        assert_eq!(found.len(), 5, "{found:?}");
+        for (_, doubt) in &found {
+            let Doubt::OffItsPoints {
+                pixels,
+                limit,
+                points,
+            } = doubt
+            else {
+                panic!("{doubt:?}");
+            };
+            assert!((*limit - 3.84).abs() < 1e-9 && *points == 40);
+            // 3 % of their distances from the middle.
+            assert!((4.0..12.0).contains(pixels), "{pixels}");
+        }
+        // A few points say nothing, nor those of a frame that the reader bent.
+        let mut few = model.clone();
+        few.observations.truncate(19);
+        assert_eq!(doubts(&few, Sizes::Known), Vec::new());
+        model.solved_reprojection_px = Some(0.5);
+        assert_eq!(doubts(&model, Sizes::Known), Vec::new());
+    }
 }

@@ -232,3 +232,101 @@ fn a_placed_flight_is_held_against_the_map_where_it_stands() {
     let error = opened(folder).unwrap_err();
     assert!(error.contains("a metre of EPSG:32632 is"), "{error}");
 }
+
+/// A header of 400 x 300 pixels, with the place where its receiver says that it was taken.
+fn photo(place: Option<crate::geodesy::Geographic>) -> Vec<u8> {
+    let xmp = place.map_or_else(String::new, |place| {
+        format!(
+            r#"<rdf:Description drone-dji:GpsLatitude="{:+.9}" drone-dji:GpsLongitude="{:+.9}"/>"#,
+            place.latitude, place.longitude
+        )
+    });
+    fragscale_test_data::jpeg::jpeg((400, 300), &[], &[&fragscale_test_data::jpeg::packet(&xmp)])
+}
+
+/// Of two cards one is missing and the other's photos lie in one folder: each file is found for two photos. Named with
+/// its folder it is the one's, and the other has none.
+#[test]
+fn photos_of_one_name_share_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let poses = poses(0.0, 0.0, 0.0, "0,0,90")
+        .replace("b.jpg", "d1/x.jpg")
+        .replace("c.jpg", "d2/x.jpg");
+    write(folder, "unit = \"m\"", &plane(0.0, 0.0, 0.0, true), &poses);
+    let file = folder.join("flight.toml");
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(
+        &file,
+        text.replace("[photos]\n", "[photos]\nfolder = \"photos\"\n"),
+    )
+    .unwrap();
+    fs::create_dir_all(folder.join("photos/d2")).unwrap();
+    for name in ["a.jpg", "x.jpg"] {
+        fs::write(folder.join("photos").join(name), photo(None)).unwrap();
+    }
+    let shared = |opened: &Opened| -> Vec<bool> {
+        let is_shared = |doubt: &Doubt| matches!(doubt, Doubt::SameFile { .. });
+        let evidence = opened.looked_up.evidence.iter();
+        evidence
+            .map(|found| found.doubts.iter().any(is_shared))
+            .collect()
+    };
+    let found = opened(folder).unwrap();
+    assert_eq!(shared(&found), [false, true, true]);
+    let said = found.all_warnings();
+    let about = said
+        .iter()
+        .filter(|said| said.contains("its file is that of d2/x.jpg, too"));
+    assert_eq!(about.count(), 1, "{said:?}");
+    // The right one is there, too: nothing is shared.
+    fs::write(folder.join("photos/d2/x.jpg"), photo(None)).unwrap();
+    assert_eq!(shared(&opened(folder).unwrap()), [false; 3]);
+}
+
+/// Two of three photos have changed their names: their receivers were where the other's pose is, 20 m away. What all are off does not
+/// count.
+#[test]
+fn receivers_that_were_elsewhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (east, north) = (452_300.0, 5_411_800.0);
+    let world = "unit = \"m\"\ncrs = \"EPSG:32632\"";
+    let poses = poses(east, north, 312.0, "0,0,90");
+    write(folder, world, &plane(east, north, 312.0, true), &poses);
+    let file = folder.join("flight.toml");
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(
+        &file,
+        text.replace("[photos]\n", "[photos]\nfolder = \"photos\"\n"),
+    )
+    .unwrap();
+    fs::create_dir_all(folder.join("photos")).unwrap();
+    let crs = crate::geodesy::Crs::understand("EPSG:32632").unwrap();
+    for (at, is_swapped) in [([20.0, 30.0, 40.0], false), ([40.0, 30.0, 20.0], true)] {
+        for (name, at) in ["a.jpg", "b.jpg", "c.jpg"].into_iter().zip(at) {
+            // All of them 3 m off, and each by another metre.
+            let place = glam::DVec3::new(east + at + 3.0 + 0.01 * at, north + 31.0, 332.0);
+            fs::write(
+                folder.join("photos").join(name),
+                photo(crs.to_geographic(place)),
+            )
+            .unwrap();
+        }
+        let found = opened(folder).unwrap();
+        let of_photo = found.looked_up.evidence.iter().map(|found| {
+            let of_place = found.doubts.iter().find_map(|doubt| match doubt {
+                Doubt::OtherPlace { distance, usual } => Some([*distance, *usual]),
+                _ => None,
+            });
+            of_place.is_some_and(|[distance, usual]| (distance - 20.0).abs() < 1.0 && usual < 1.0)
+        });
+        let of_photo: Vec<bool> = of_photo.collect();
+        assert_eq!(of_photo, [is_swapped, false, is_swapped]);
+        let said = found.all_warnings();
+        let about = said
+            .iter()
+            .filter(|said| said.contains("from where its pose stands"));
+        assert_eq!(about.count(), usize::from(is_swapped), "{said:?}");
+    }
+}
