@@ -96,6 +96,15 @@ pub(crate) fn set_sizes_from_files(
     }
     if !sizes.iter().any(Option::is_some) {
         let (photo, why) = left_out.into_iter().next().unwrap_or_default();
+        // A package without the list of its photos has numbers in the place of names.
+        if !photo.is_empty() && photo.bytes().all(|byte| byte.is_ascii_digit()) {
+            let what = format!(
+                "nothing says how its photos are called ('{photo}' is a number), and so neither of what size they are"
+            );
+            let remedy =
+                "put the list of their names beside it, as the package wrote it (list.txt)";
+            return Err(Fault::new(what, remedy).for_want_of(Lacking::Photos));
+        }
         return Err(Fault::new(
             format!(
                 "the image size of '{photo}' is not known: this package writes none, and its file does not tell it ({why})"
@@ -308,5 +317,23 @@ mod tests {
                 .unwrap()
                 .contains("another shape")
         );
+    }
+
+    /// Bundler's file alone, without the list of its photos.
+    #[test]
+    fn numbers_in_the_place_of_names() {
+        let mut model = crate::covariance::tests::model();
+        for (index, photo) in model.photos.iter_mut().enumerate() {
+            photo.name = index.to_string();
+        }
+        let (folder, mut said) = (PhotoFolder::new(None), Vec::new());
+        let fault = set_sizes_from_files(&mut model, &folder, |_| None, &mut said).unwrap_err();
+        assert!(
+            fault
+                .what
+                .contains("nothing says how its photos are called"),
+            "{fault}"
+        );
+        assert!(fault.remedy.contains("list.txt"), "{fault}");
     }
 }
