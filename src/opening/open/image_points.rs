@@ -200,9 +200,8 @@ mod tests {
         let mut model = model();
         model.sizes = Sizes::Known;
         assert_eq!(doubts(&model, Sizes::Known), Vec::new());
-        for length in [&mut model.cameras[0].fx, &mut model.cameras[0].fy] {
-            *length *= 1.03;
-        }
+        model.cameras[0].fx *= 1.03;
+        model.cameras[0].fy *= 1.03;
         let found = doubts(&model, Sizes::Known);
         assert_eq!(found.len(), 5, "{found:?}");
         for (_, doubt) in &found {
