@@ -69,7 +69,9 @@ impl State {
             let by_mass = by_mass([(&measured, steps)]);
             let percents = SizeInterval::PERCENTS;
             let intervals = intervals(&[(&measured, steps)], doubts, &percents).unwrap_or_default();
-            let notes = covered.into_iter().chain(measured.notes(&labels));
+            let notes = covered
+                .into_iter()
+                .chain(measured.notes(&labels, habits.is_some()));
             let measured = MeasuredFragments {
                 notes: notes.collect(),
                 without: objects,

@@ -170,12 +170,14 @@ impl PhotoFragments {
         })
     }
 
-    /// What is to be said of a photo's outlines, one sentence each.
-    pub fn notes(&self, labels: &LabelImage) -> Vec<String> {
+    /// What is to be said of a photo's outlines, one sentence each. `by_engine`: of an engine's it is no wonder that some are narrower
+    /// than its limit.
+    pub fn notes(&self, labels: &LabelImage, by_engine: bool) -> Vec<String> {
         let little = self.little(labels);
         // That is more than a large piece of it.
         let bare = if little.is_none() { bare(labels) } else { None };
-        let notes = [self.specks(), self.off_surface(), self.ball(), bare, little];
+        let specks = if by_engine { None } else { self.specks() };
+        let notes = [specks, self.off_surface(), self.ball(), bare, little];
         notes.into_iter().flatten().collect()
     }
 

@@ -153,7 +153,7 @@ fn the_limit_of_others_is_as_wide_as_an_engines() {
         let field = field(0.0);
         let photo =
             crate::photo::fragments(&labels, &field, SieveShape::Circle, None, LengthUnit::Metre);
-        (photo.limit, photo.notes(&labels))
+        (photo.limit, photo.notes(&labels, false))
     };
     let (limit, notes) = said(30.0);
     close(limit, (4.0 / PI).sqrt() * 30.0 / 125.0, 1e-6);
@@ -181,7 +181,7 @@ fn what_is_beside_the_surface_is_said() {
     });
     let photo =
         crate::photo::fragments(&labels, &field, SieveShape::Circle, None, LengthUnit::Metre);
-    let notes = photo.notes(&labels);
+    let notes = photo.notes(&labels, false);
     assert!(
         notes[0].starts_with("1 outline of which too little lies on the surface"),
         "{notes:?}"

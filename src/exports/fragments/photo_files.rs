@@ -70,7 +70,7 @@ impl PhotoOutlined<'_> {
         let fragments = photo::fragments(self.labels, &field, self.shape, least, units[0]);
         Ok(OutlinedFiles {
             bytes: self.bytes(&posed.name, &field, &fragments, places, units)?,
-            notes: fragments.notes(self.labels),
+            notes: fragments.notes(self.labels, habits.is_some()),
             fragments,
         })
     }
