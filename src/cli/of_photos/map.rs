@@ -9,11 +9,11 @@ use super::length::Length;
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::on_surface::places::ON_EARTH_REMEDY;
 use crate::cli::outputs::{Force, Outputs};
+use crate::cli::scales::review_of_scales;
 use crate::cli::{Answer, OutputUnit};
 use crate::exports::{MeasuredOutline, Plan, PlanFormat, PlanGround, PlanRequest, taken_in_words};
 use crate::fault::Fault;
 use crate::files::Kind;
-use crate::flight::{Limits, Review};
 use crate::formats::FileError;
 use crate::formats::photos::photo_metadata;
 use crate::jobs::Progress;
@@ -98,12 +98,7 @@ pub(in crate::cli) fn map(arguments: &MapArguments, progress: &Progress) -> Resu
             "leave --pixel away, georeference it, or say the unit in a flight.toml ([world] unit)";
         return Err(in_flight(Fault::new(what, remedy)));
     }
-    let (flight, looked_up) = (opened.flight.clone(), opened.looked_up.clone());
-    let review = Review::of_scales(flight, looked_up, &Limits::default(), progress);
-    let mut review = review.map_err(in_flight)?;
-    review.take_decisions(&opened.settings.decisions);
-    review.look(progress).map_err(in_flight)?;
-    review.compute_fields(progress).map_err(in_flight)?;
+    let review = review_of_scales(&arguments.flight, &opened, progress)?;
     let paths = opened
         .photo_files
         .iter()

@@ -244,6 +244,14 @@ fn photo(place: Option<crate::geodesy::Geographic>) -> Vec<u8> {
     fragscale_test_data::jpeg::jpeg((400, 300), &[], &[&fragscale_test_data::jpeg::packet(&xmp)])
 }
 
+/// Its photos lie in `photos`.
+fn name_photo_folder(folder: &Path) {
+    let file = folder.join("flight.toml");
+    let text = fs::read_to_string(&file).unwrap();
+    let named = text.replace("[photos]\n", "[photos]\nfolder = \"photos\"\n");
+    fs::write(&file, named).unwrap();
+}
+
 /// Of two cards one is missing and the other's photos lie in one folder: each file is found for two photos. Named with
 /// its folder it is the one's, and the other has none.
 #[test]
@@ -254,13 +262,7 @@ fn photos_of_one_name_share_a_file() {
         .replace("b.jpg", "d1/x.jpg")
         .replace("c.jpg", "d2/x.jpg");
     write(folder, "unit = \"m\"", &plane(0.0, 0.0, 0.0, true), &poses);
-    let file = folder.join("flight.toml");
-    let text = fs::read_to_string(&file).unwrap();
-    fs::write(
-        &file,
-        text.replace("[photos]\n", "[photos]\nfolder = \"photos\"\n"),
-    )
-    .unwrap();
+    name_photo_folder(folder);
     fs::create_dir_all(folder.join("photos/d2")).unwrap();
     for name in ["a.jpg", "x.jpg"] {
         fs::write(folder.join("photos").join(name), photo(None)).unwrap();
@@ -294,13 +296,7 @@ fn receivers_that_were_elsewhere() {
     let world = "unit = \"m\"\ncrs = \"EPSG:32632\"";
     let poses = poses(east, north, 312.0, "0,0,90");
     write(folder, world, &plane(east, north, 312.0, true), &poses);
-    let file = folder.join("flight.toml");
-    let text = fs::read_to_string(&file).unwrap();
-    fs::write(
-        &file,
-        text.replace("[photos]\n", "[photos]\nfolder = \"photos\"\n"),
-    )
-    .unwrap();
+    name_photo_folder(folder);
     fs::create_dir_all(folder.join("photos")).unwrap();
     let crs = crate::geodesy::Crs::understand("EPSG:32632").unwrap();
     for (at, is_swapped) in [([20.0, 30.0, 40.0], false), ([40.0, 30.0, 20.0], true)] {
