@@ -28,7 +28,6 @@ mod usage;
 mod written_beside;
 
 use std::io::{self, Write};
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand, ValueEnum};
@@ -56,7 +55,7 @@ struct Arguments {
     /// Open this flight in a window, perhaps with its surface and the folder of its photos; without
     /// it, the window's start page.
     #[cfg(feature = "app")]
-    flight: Vec<PathBuf>,
+    flight: Vec<std::path::PathBuf>,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -262,7 +261,7 @@ pub fn run() -> ExitCode {
 
 /// Opens the window, with a flight where one is named.
 #[cfg(feature = "app")]
-fn window(flight: Vec<PathBuf>) -> ExitCode {
+fn window(flight: Vec<std::path::PathBuf>) -> ExitCode {
     if let Some(what) = usage::unknown_command() {
         say(&format!("error: {what}"));
         return ExitCode::from(2);
