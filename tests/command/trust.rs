@@ -172,7 +172,7 @@ fn a_photo_folder_that_cannot_be_is_refused() {
     let model = opensfm(folder.path(), (40, 30), "c");
     let other = folder.path().join("other");
     image(&other.join("IMG_1.jpg"), (40, 30));
-    image(&folder.path().join("card/100MEDIA/DJI_0025.JPG"), (40, 30));
+    image(&folder.path().join("card/north/DJI_0025.JPG"), (40, 30));
     let file = folder.path().join("file.txt");
     fs::write(&file, "x").expect("written");
     let flight = |photos: &str| {
@@ -195,7 +195,7 @@ fn a_photo_folder_that_cannot_be_is_refused() {
         ),
         (
             "card",
-            "it holds no images itself (but folders within it: 100MEDIA), and none of the flight's 3 photos (DJI_0025.JPG, DJI_0026.JPG, ...)",
+            "it holds no images itself (but folders within it: north), and none of the flight's 3 photos (DJI_0025.JPG, DJI_0026.JPG, ...)",
         ),
     ] {
         let path = folder.path().join(name);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::image_names::{is_image, readable};
 use super::photo_size;
-use super::photos_below::folders_of_photos;
+use super::photos_below::{PhotosBelow, folders_of_photos};
 use crate::fault::{Fault, first_names};
 use crate::files::{last_segment, open_file, unreadable_folder};
 use crate::packages::reconstruction::Reconstruction;
@@ -18,22 +18,39 @@ const SHOWN: usize = 2;
 pub struct PhotoFolder<'a> {
     /// Where they are, if a folder is known.
     pub folder: Option<&'a Path>,
-    /// The files directly in it by their names in lower case; of two that differ in nothing else,
-    /// `None`: which is meant is not for us to say.
+    /// Its files by their names in lower case: those directly in it, or, where no image is among them, those in the folders
+    /// that a camera made in it. Of two that differ in nothing else `None`: which is meant is not for us to say.
     in_any_case: HashMap<String, Option<PathBuf>>,
 }
 
 impl<'a> PhotoFolder<'a> {
-    /// The files directly in `folder`.
+    /// The files of `folder`.
     pub fn new(folder: Option<&'a Path>) -> Self {
         let mut in_any_case = HashMap::new();
-        let entries = folder.and_then(|folder| std::fs::read_dir(folder).ok());
-        for entry in entries.into_iter().flatten().flatten() {
-            let key = entry.file_name().to_string_lossy().to_lowercase();
-            in_any_case
-                .entry(key)
+        let mut add = |path: PathBuf| {
+            let key = path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .to_lowercase();
+            let is_photo = is_image(&key);
+            let known = in_any_case.entry(key);
+            known
                 .and_modify(|known| *known = None)
-                .or_insert_with(|| Some(entry.path()));
+                .or_insert(Some(path));
+            is_photo
+        };
+        let entries = folder.and_then(|folder| std::fs::read_dir(folder).ok());
+        let mut has_photos = false;
+        for entry in entries.into_iter().flatten().flatten() {
+            has_photos |= add(entry.path());
+        }
+        if let Some(card) = folder.filter(|_| !has_photos)
+            && let Ok(below) = PhotosBelow::read(card)
+        {
+            below.photos.into_iter().for_each(|(_, path)| {
+                add(path);
+            });
         }
         Self {
             folder,
@@ -140,4 +157,49 @@ pub fn folder_of_photos(
         let mut photos = reconstruction.photos.iter().take(TRIED);
         photos.any(|photo| files.find(&photo.name).is_some())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    /// A memory card's DCIM, of which a package kept the names of files alone: what two of its folders have is nobody's.
+    #[test]
+    fn a_card_is_the_folder_of_the_photos_in_its_folders() {
+        let card = tempfile::tempdir().unwrap();
+        let write = |name: &str| {
+            let path = card.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, "a photo").unwrap();
+        };
+        for name in [
+            "100MEDIA/DJI_0998.JPG",
+            "101MEDIA/DJI_0999.JPG",
+            "north/DJI_0001.JPG",
+        ] {
+            write(name);
+        }
+        for folder in ["100MEDIA", "101MEDIA"] {
+            write(&format!("{folder}/DJI_0500.JPG"));
+        }
+        let found = |photo: &str| {
+            let path = PhotoFolder::new(Some(card.path())).find(photo)?;
+            Some(path.strip_prefix(card.path()).unwrap().to_owned())
+        };
+        assert_eq!(found("DJI_0998.JPG"), Some("100MEDIA/DJI_0998.JPG".into()));
+        assert_eq!(found("dji_0999"), Some("101MEDIA/DJI_0999.JPG".into()));
+        assert_eq!(found("DJI_0500.JPG"), None);
+        assert_eq!(
+            found("101MEDIA/DJI_0500.JPG"),
+            Some("101MEDIA/DJI_0500.JPG".into())
+        );
+        // No camera made it.
+        assert_eq!(found("DJI_0001.JPG"), None);
+        // Photos of its own are those that are meant.
+        write("DJI_0500.JPG");
+        assert_eq!(found("DJI_0500.JPG"), Some("DJI_0500.JPG".into()));
+        assert_eq!(found("DJI_0998.JPG"), None);
+    }
 }
