@@ -53,7 +53,7 @@ pub(super) fn check_of(
 ) -> Result<(Answer, Option<Review>), String> {
     outputs.read(&opened.read)?;
     let mut looked = look_at(&arguments.flight, opened, progress)?;
-    let at = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
+    let at = |fault: Fault| arguments.flight.wrong(fault);
     if let Some(review) = &mut looked.review {
         review.take_decisions(&opened.settings.decisions);
         review.look(progress).map_err(at)?;

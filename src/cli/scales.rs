@@ -7,7 +7,6 @@ use super::outputs::{AnswerArguments, Outputs};
 use super::{Answer, OutputUnit};
 use crate::exports;
 use crate::flight::{Limits, Review};
-use crate::formats::FileError;
 use crate::jobs::Progress;
 use crate::opening::Opened;
 
@@ -48,9 +47,9 @@ pub(super) fn review_of_scales(
     opened: &Opened,
     progress: &Progress,
 ) -> Result<Review, String> {
-    let in_flight = |fault| FileError::new(&flight.flight, fault).to_string();
-    let (flight, looked_up) = (opened.flight.clone(), opened.looked_up.clone());
-    let review = Review::of_scales(flight, looked_up, &Limits::default(), progress);
+    let in_flight = |fault| flight.wrong(fault);
+    let (of, looked_up) = (opened.flight.clone(), opened.looked_up.clone());
+    let review = Review::of_scales(of, looked_up, &Limits::default(), progress);
     let mut review = review.map_err(in_flight)?;
     review.take_decisions(&opened.settings.decisions);
     review.look(progress).map_err(in_flight)?;
@@ -76,7 +75,7 @@ fn scales_text(
     opened: &Opened,
     review: &Review,
 ) -> Result<(String, Vec<String>), String> {
-    let in_flight = |fault| FileError::new(&arguments.flight.flight, fault).to_string();
+    let in_flight = |fault| arguments.flight.wrong(fault);
     let report = exports::ScaleReport::new(review, arguments.unit.into())
         .with_scale_objects(&opened.settings.scale_objects)
         .map_err(in_flight)?;

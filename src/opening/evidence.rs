@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::fault::{Fault, first_names};
 use crate::flight::{ColoursFound, Doubt, Evidence, Flight, LookedUp, PhotoFileState, Review};
 use crate::jobs::Progress;
-use crate::photo_checks::photo_checks;
+use crate::photo_checks::{Finding, photo_checks};
 use crate::photo_files::PhotoFile;
 use crate::picture::{Agreement, Mismatch};
 
@@ -41,13 +41,10 @@ pub fn look_up(flight: &Flight, files: &[PhotoFile]) -> LookedUp {
     let (of_single, of_files): (Vec<_>, Vec<_>) = of_files
         .into_iter()
         .partition(|(doubt, _)| matches!(doubt, Doubt::OtherPlace { .. }));
-    let of_single = of_single
-        .into_iter()
-        .flat_map(|(doubt, photos)| photos.into_iter().map(move |photo| (photo, doubt.clone())));
     let of_photos = parts.as_read.of_photos.iter().cloned();
     let of_photos = of_photos
         .chain(shared_files(flight, files))
-        .chain(of_single);
+        .chain(each_photo(of_single));
     let of_photos: Vec<(usize, Doubt)> = of_photos.collect();
     warnings.extend(in_words(flight, &of_photos));
     warnings.extend(doubt_sizes(flight, files, &mut evidence));
@@ -55,10 +52,7 @@ pub fn look_up(flight: &Flight, files: &[PhotoFile]) -> LookedUp {
     warnings.extend(placement.warnings(flight));
     let of_places = placement.doubts(parts.unit);
     warnings.extend(of_files.iter().map(|(doubt, _)| doubt.to_string()));
-    let of_files = of_files.into_iter().flat_map(|(doubt, photos)| {
-        let each = photos.into_iter();
-        each.map(move |photo| (photo, doubt.clone()))
-    });
+    let of_files = each_photo(of_files);
     for (photo, doubt) in of_photos.into_iter().chain(of_places).chain(of_files) {
         if let Some(evidence) = evidence.get_mut(photo) {
             evidence.doubts.push(doubt);
@@ -69,6 +63,15 @@ pub fn look_up(flight: &Flight, files: &[PhotoFile]) -> LookedUp {
         warnings,
         metadata,
     }
+}
+
+/// Findings, a photo each.
+fn each_photo(findings: Vec<Finding>) -> impl Iterator<Item = (usize, Doubt)> {
+    let of_all = |(doubt, photos): Finding| {
+        let each = photos.into_iter();
+        each.map(move |photo| (photo, doubt.clone()))
+    };
+    findings.into_iter().flat_map(of_all)
 }
 
 /// What speaks against single photos, the same of many in a sentence.
@@ -105,8 +108,9 @@ fn shared_files(flight: &Flight, files: &[PhotoFile]) -> Vec<(usize, Doubt)> {
     for (path, sharing) in of_path {
         let is_its = |photo: usize| path.ends_with(photos[photo].name.replace('\\', "/"));
         for &photo in &sharing {
-            let other = sharing.iter().find(|other| **other != photo);
-            if let Some(&other) = other.filter(|other| !is_its(photo) || is_its(**other)) {
+            let is_own = is_its(photo);
+            let mut others = sharing.iter().filter(|other| **other != photo);
+            if let Some(&other) = others.find(|other| !is_own || is_its(**other)) {
                 let other = photos[other].name.clone();
                 doubts.push((photo, Doubt::SameFile { other }));
             }

@@ -382,13 +382,10 @@ fn photos(review: &Review) -> HealthFinding {
             Doubt::FileSize { .. } | Doubt::SolvedOnOther { .. } | Doubt::SameFile { .. }
         )
     };
-    let (other_size, reason) = doubted(review, is_of_file);
+    let (wrong, reason) = doubted(review, is_of_file);
     let short = format!("{found} of {count}");
     let (health, says) = match found == count && count > 0 {
-        true if other_size > 0 => (
-            Health::Bad,
-            format!("{}: {reason}.", share(other_size, review)),
-        ),
+        true if wrong > 0 => (Health::Bad, format!("{}: {reason}.", share(wrong, review))),
         true => (Health::Good, format!("All {count} photo files are there.")),
         false => (
             Health::Bad,

@@ -174,17 +174,18 @@ fn what_makes_no_plan_is_one_line() {
     );
     // Its coordinate system says it, too: feet of Colorado are no metres.
     let metres = String::from_utf8_lossy(&output.stdout).into_owned();
-    let told = |crs: &str| {
+    let told_by = |option: [&str; 2]| {
         let mut without = said.clone();
         without.drain(6..8);
-        let output = fragscale(&[&without[..], &["--crs", crs]].concat());
+        let output = fragscale(&[&without[..], &option].concat());
         let error = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(0), "{error}");
         String::from_utf8_lossy(&output.stdout).into_owned()
     };
-    assert_eq!(told("EPSG:32632"), metres);
-    let feet = told("EPSG:2231");
+    assert_eq!(told_by(["--crs", "EPSG:32632"]), metres);
+    let feet = told_by(["--crs", "EPSG:2231"]);
     assert!(feet.contains("us-ft") && feet != metres, "{feet}");
+    assert_eq!(told_by(["--unit", "us-ft"]), feet);
     let geocentric = [&said[..], &["--crs", "EPSG:4978"]].concat();
     let output = fragscale(&geocentric);
     let error = String::from_utf8_lossy(&output.stderr).into_owned();

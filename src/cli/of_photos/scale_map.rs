@@ -151,7 +151,7 @@ impl MadeMaps {
         warnings.extend(self.failed.sentences());
         let fault = || {
             let fault = Fault::new("none of its photos has a map", "see the warnings above");
-            FileError::new(&arguments.flight.flight, fault).to_string()
+            arguments.flight.wrong(fault)
         };
         Answer {
             text: String::new(),

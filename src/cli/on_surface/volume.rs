@@ -103,7 +103,7 @@ pub(in crate::cli) fn volume(
         let what = "the polygon lies beside the surface, or over a hole of it";
         let remedy = "give corners in its coordinates; 'fragscale info' shows its bounds";
         let fault = Fault::new(what, remedy);
-        return Err(FileError::new(&arguments.flight.flight, fault).to_string());
+        return Err(arguments.flight.wrong(fault));
     }
     let base = base_file.map(|path| path.display().to_string());
     let report = VolumeReport {

@@ -140,10 +140,10 @@ const FRAGMENT_NAMES: [&str; 24] = [
 impl Meaning {
     /// Of a class by its name: all that is not known for something else is a fragment.
     pub(super) fn of_class(name: &str) -> Self {
-        let is_one_of = |names: &[&str]| is_one_of(names, &in_words(name));
-        if is_one_of(&FINES_NAMES) {
+        let words = in_words(name);
+        if is_one_of(&FINES_NAMES, &words) {
             Self::Fines
-        } else if is_one_of(&NOT_ROCK_NAMES) {
+        } else if is_one_of(&NOT_ROCK_NAMES, &words) {
             Self::NotRock
         } else {
             Self::Fragment

@@ -116,8 +116,7 @@ pub(super) fn is_namesake(one: &str, other: &str) -> bool {
 
 /// Whether a file of outlines lies in a folder that is called as the photo's, or has that folder in its name.
 pub(super) fn is_told_by_folder(path: &Path, photo: &str) -> bool {
-    let folders: Vec<&str> = photo.split(['/', '\\']).rev().skip(1).collect();
-    let Some(folder) = folders.first() else {
+    let Some(folder) = photo.rsplit(['/', '\\']).nth(1) else {
         return false;
     };
     let parent = path.parent().and_then(Path::file_name).unwrap_or_default();
@@ -163,8 +162,7 @@ pub(super) fn candidates<'a>(files: &'a [PathBuf], photo: &str) -> impl Iterator
 
 /// Whether outlines may be in a file of this name: not what fragscale writes beside label images.
 pub(super) fn may_be_outlines(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let name = name.to_lowercase();
+    let name = lower_name(path);
     let kinds = [".png", ".tif", ".tiff", ".json", ".geojson", ".xml"];
     kinds.iter().any(|kind| name.ends_with(kind)) && !BESIDE.iter().any(|own| name.ends_with(own))
 }

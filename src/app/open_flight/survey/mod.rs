@@ -185,9 +185,7 @@ impl OpenFlight {
         };
         // The surface may be another one by then.
         drawn.asked = None;
-        self.pointer
-            .put_away
-            .retain(|other| other.tool != drawn.tool);
+        // The one of this tool was taken from there.
         self.pointer.put_away.push(drawn);
     }
 

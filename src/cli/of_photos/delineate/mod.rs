@@ -29,7 +29,7 @@ use crate::delineation::measures::SieveShape;
 use crate::exports::{self, FoundSize, FragmentSizes, FragmentTables, MapPlaces, MassWay};
 use crate::fault::Fault;
 use crate::files::Kind;
-use crate::formats::{FileError, read_bytes};
+use crate::formats::read_bytes;
 use crate::jobs::Progress;
 use crate::opening::Opened;
 use crate::units::LengthUnit;
@@ -115,7 +115,7 @@ pub(in crate::cli) fn delineate_of(
     progress: &Progress,
 ) -> Result<(Answer, Vec<FoundSize>), String> {
     let outputs = outliners.outputs(arguments, opened)?;
-    let in_flight = |fault| FileError::new(&arguments.flight.flight, fault).to_string();
+    let in_flight = |fault| arguments.flight.wrong(fault);
     let flight = &opened.flight;
     let units @ [world, unit]: [LengthUnit; 2] = [flight.parts().unit, arguments.unit.into()];
     let (tail, of_tail) = arguments.mass.tail(world)?;

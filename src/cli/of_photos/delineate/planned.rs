@@ -12,7 +12,6 @@ use crate::cli::of_photos::chosen_photos::ChosenPhotos;
 use crate::cli::outputs::Outputs;
 use crate::exports::{self, FRAGMENT_TABLES};
 use crate::fault::Fault;
-use crate::formats::FileError;
 use crate::opening::{Opened, apart_from_photos};
 
 /// The photos and their files.
@@ -45,7 +44,7 @@ impl Planned {
         let to = &arguments.to;
         apart_from_photos(to, &opened.photo_files).map_err(|error| error.to_string())?;
         let flight = &opened.flight;
-        let in_flight = |fault| FileError::new(&arguments.flight.flight, fault).to_string();
+        let in_flight = |fault| arguments.flight.wrong(fault);
         let photos = ChosenPhotos::named_or_all(arguments.photo.clone());
         let mut chosen = photos.of(flight).map_err(in_flight)?;
         let mut warnings = Vec::new();
