@@ -10,6 +10,7 @@ use super::bridges::Bridged;
 use super::draws::interval_of_scale;
 use super::holes::of_holes;
 use super::moved::of_moves;
+use super::point_noise::PointNoise;
 use super::surface_error::{DepthError, effective_count, mean, root_mean_square, tan_of_incidence};
 use super::unseen::Unseen;
 use super::{Interval, UncertainPhoto};
@@ -45,7 +46,7 @@ impl LineErrors {
         fitted: &FittedScale,
         plane: DVec3,
         depths: &[DepthError],
-        (unseen, bridged): (Unseen, Bridged),
+        (unseen, bridged, noise): (Unseen, Bridged, PointNoise),
     ) -> Self {
         let (field, errors) = (photo.field, &photo.errors);
         let ends = ends_by_plane(field, field.camera());
@@ -103,6 +104,7 @@ impl LineErrors {
                     stated,
                     holes[index],
                     bridged.spread,
+                    noise.unusual(),
                 ];
                 parts.iter().map(|part| part * part).sum::<f64>().sqrt()
             });
@@ -235,7 +237,7 @@ mod tests {
                 &fitted,
                 plane,
                 &depths,
-                (Unseen { bias }, Bridged::default()),
+                (Unseen { bias }, Bridged::default(), PointNoise::default()),
             );
             line.ends[0].too_large
         };

@@ -6,7 +6,7 @@
 //! tell all (`line`); where the surface ends inside the photo, what is not seen of it is drawn from what
 //! is (`holes`), and where triangles bridge what no photo saw, it is deeper (`bridges`); one pixel hangs on
 //! one place as well (`pixels`). What the surface adds comes from the cloud itself (`surface_error`), and more where
-//! the deep between fragments has no points (`unseen`). Draws follow from one seed: the same on every run.
+//! the deep between fragments has no points (`unseen`), or points of one place do not agree (`point_noise`). Draws follow from one seed: the same on every run.
 
 mod bridges;
 mod corners;
@@ -15,6 +15,7 @@ mod holes;
 mod line;
 mod moved;
 mod pixels;
+mod point_noise;
 mod surface_error;
 mod unseen;
 
@@ -127,8 +128,9 @@ impl Uncertainty {
     pub fn compute(photo: &UncertainPhoto<'_>, surface: &Surface) -> Option<Self> {
         let plane = plane_of(photo.field)?;
         let errors = DepthErrors::of(photo.field, plane, surface);
-        let (unseen, depths) = (Unseen::of(&errors), errors.each);
-        let corners = CornerDraws::new(photo, plane, (&depths, unseen), surface);
+        let quiet = errors.without_noise();
+        let unseen = Unseen::of(&quiet);
+        let corners = CornerDraws::new(photo, plane, (&errors.each, unseen), surface);
         let line = photo.fitted.map(|fitted| {
             let bridged = match surface.is_cloud() {
                 true => of_bridges(photo.field, fitted, plane),
@@ -138,8 +140,8 @@ impl Uncertainty {
                 photo,
                 fitted,
                 plane,
-                &without_flying(&depths),
-                (unseen, bridged),
+                &without_flying(&quiet.each),
+                (unseen, bridged, errors.noise),
             )
         });
         let line_parts = line.as_ref().map(LineErrors::parts_percent);

@@ -36,7 +36,7 @@ impl PixelErrors {
     pub fn new(field: &ScaleField, stated: &StatedErrors, surface: &Surface) -> Option<Self> {
         let plane = plane_of(field)?;
         let errors = DepthErrors::of(field, plane, surface);
-        let (unseen, depths) = (Unseen::of(&errors), errors.each);
+        let (unseen, depths) = (Unseen::of(&errors.without_noise()), errors.each);
         let roughness = root_mean_square(&depths).map(|of_all| {
             let camera = field.camera();
             let mut squares = vec![Vec::new(); ACROSS * rows(camera)];

@@ -11,6 +11,8 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
+use super::point_noise::{MOST_TRIANGLES, PointNoise};
+use crate::geometry::Bounds;
 use crate::scale::field::ScaleField;
 use crate::scale::pyramid::Pyramid;
 use crate::surface::{LeftOut, Patch, Surface};
@@ -23,7 +25,7 @@ pub(super) const MOST_POINTS: usize = 4000;
 
 /// What is off by more than so many times what nine in ten points are off by at most is no surface: points that fly between
 /// pile and camera would make it say nothing of the others.
-const FLYING: f64 = 5.0;
+pub(super) const FLYING: f64 = 5.0;
 
 /// By how much of a cell the squares are shifted that points twice as far apart are chosen from.
 pub(super) const SHIFTED: [DVec2; 4] = [
@@ -118,6 +120,8 @@ pub(super) struct DepthErrors {
     /// The same with points twice as far apart, at each of which there are in [`SHIFTED`] choices of them; none of a
     /// surface that came with its faces.
     pub(super) sparser: Vec<DepthError>,
+    /// How far points of one place lie apart; nothing of a surface that came with its faces.
+    pub(super) noise: PointNoise,
 }
 
 impl DepthErrors {
@@ -153,9 +157,19 @@ impl DepthErrors {
         if !surface.is_cloud() {
             return Self {
                 each: left_out.filter_map(|left_out| error(&left_out)).collect(),
-                sparser: Vec::new(),
+                ..Self::default()
             };
         }
+        let count: usize = patches.iter().map(Patch::len).sum();
+        let misses = |bounds: &Bounds| seen.misses(bounds);
+        let triangles = patches
+            .iter()
+            .flat_map(|patch| patch.triangles_seen(misses));
+        let triangles = triangles.step_by((count / MOST_TRIANGLES).max(1));
+        let in_photo = |corner: &DVec3| seen_at(*corner).is_some();
+        let triangles: Vec<[DVec3; 3]> = triangles
+            .filter(|corners| corners.iter().all(in_photo))
+            .collect();
         let mut all: Vec<LeftOut> = left_out
             .filter(|left_out| seen_at(left_out.point).is_some())
             .collect();
@@ -178,6 +192,28 @@ impl DepthErrors {
         Self {
             each: all.iter().filter_map(error).collect(),
             sparser: sparser.filter_map(|left_out| error(&left_out)).collect(),
+            noise: PointNoise::of(&triangles, plane.dot(up)),
+        }
+    }
+
+    /// The same of a cloud that is no noisier than usual: each error less by the noise's part in all.
+    pub(super) fn without_noise(&self) -> Self {
+        let without = |errors: &[DepthError]| -> Vec<DepthError> {
+            let kept = without_flying(errors);
+            let squares: f64 = kept.iter().map(|error| error.relative.powi(2)).sum();
+            let factor = self
+                .noise
+                .factor_without(squares / kept.len().max(1) as f64);
+            let less = |error: &DepthError| DepthError {
+                relative: error.relative * factor,
+                ..*error
+            };
+            errors.iter().map(less).collect()
+        };
+        Self {
+            each: without(&self.each),
+            sparser: without(&self.sparser),
+            noise: PointNoise::default(),
         }
     }
 }

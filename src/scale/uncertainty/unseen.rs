@@ -215,6 +215,7 @@ mod tests {
         DepthErrors {
             each: errors(count, 0.01),
             sparser: errors(count, 0.01 * 4.0_f64.powf(power)),
+            ..DepthErrors::default()
         }
     }
 
@@ -263,6 +264,7 @@ mod tests {
         let plane = DepthErrors {
             each: errors(400, 0.0),
             sparser: errors(400, 0.0),
+            ..DepthErrors::default()
         };
         assert_eq!(Unseen::of(&plane).bias, 0.0);
     }
