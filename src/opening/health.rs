@@ -85,6 +85,7 @@ impl Remedy {
             Doubt::FarFromSurface { .. }
             | Doubt::OffSurface(_)
             | Doubt::NoPoint(_)
+            | Doubt::NoisyPoints { .. }
             | Doubt::RoundedPoints { .. } => Some(Self::AddSurface),
             _ => None,
         }

@@ -38,7 +38,9 @@ pub use sighting::{Sighting, sighting};
 pub use sights::Sights;
 pub use sphere::Sphere;
 pub use stated_errors::{PoseErrors, ScalePair, StatedErrors};
-pub use uncertainty::{Draws, ErrorSource, Interval, PixelErrors, UncertainPhoto, Uncertainty};
+pub use uncertainty::{
+    Draws, ErrorSource, Interval, PixelErrors, PointNoise, UncertainPhoto, Uncertainty,
+};
 pub use view::ViewFacts;
 
 use crate::camera::{Camera, NotInvertible, Pose};

@@ -4,7 +4,7 @@
 use super::Doubt;
 
 /// All words.
-const KINDS: [&str; 36] = [
+const KINDS: [&str; 37] = [
     "no-scale",
     "off-surface",
     "no-point",
@@ -17,6 +17,7 @@ const KINDS: [&str; 36] = [
     "not-plane",
     "off-line",
     "wide-interval",
+    "noisy-points",
     "unit-unknown",
     "unit-not-systems",
     "small-angles",
@@ -71,6 +72,7 @@ impl Doubt {
             Self::NotPlane { .. } => "not-plane",
             Self::OffLine { .. } => "off-line",
             Self::WideInterval { .. } => "wide-interval",
+            Self::NoisyPoints { .. } => "noisy-points",
             Self::UnitUnknown => "unit-unknown",
             Self::UnitNotSystems { .. } => "unit-not-systems",
             Self::SmallAngles { .. } => "small-angles",

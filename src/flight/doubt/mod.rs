@@ -8,7 +8,7 @@ use std::fmt;
 pub use sight::{InView, OnPhoto, Sight};
 
 use crate::numbers::to_digits;
-use crate::scale::{CornerName, LEAST_COVERED};
+use crate::scale::{CornerName, LEAST_COVERED, PointNoise};
 use crate::units::{LengthUnit, in_words};
 
 /// A reason not to trust a photo's scale. Prints as a sentence without a full stop.
@@ -81,6 +81,13 @@ pub enum Doubt {
         percent: f64,
         /// Percent.
         limit: f64,
+    },
+    /// Points of one place lie apart by more than reconstructions leave.
+    NoisyPoints {
+        /// How far (standard deviation).
+        noise: PointNoise,
+        /// Of its height; `None` where nobody states it.
+        unit: Option<LengthUnit>,
     },
     /// Nobody says what unit the world counts in.
     UnitUnknown,
@@ -384,6 +391,13 @@ impl fmt::Display for Doubt {
                     "the 95 % interval of its scale is {percent} % wide, more than {limit} %"
                 )
             }
+            Self::NoisyPoints { noise, unit } => write!(
+                f,
+                "points of one place lie {} {} apart in height (standard deviation), {} % of their distance: a noisy cloud, or layers that do not fit; its scale may be too large by as much: clean or realign the cloud",
+                to_digits(noise.height, 2),
+                in_words(*unit),
+                to_digits(noise.relative * 100.0, 2)
+            ),
             Self::UnitUnknown => f.write_str(
                 "not a scale: the model is in a frame of its own, whose unit nobody states; georeference it, or set its unit",
             ),

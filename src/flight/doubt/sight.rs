@@ -63,6 +63,7 @@ impl Doubt {
             | Self::NoLine
             | Self::NotPlane { .. }
             | Self::OffLine { .. }
+            | Self::NoisyPoints { .. }
             | Self::RoundedPoints { .. } => (OnPhoto::Field, InView::Footprint),
             Self::Ratio { .. } | Self::WideInterval { .. } => {
                 (OnPhoto::TopBottom, InView::Footprint)

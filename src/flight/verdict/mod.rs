@@ -196,7 +196,7 @@ pub(super) fn judge(facts: &Facts<'_>, limits: &Limits) -> Judged {
     doubts.splice(0..0, of_number);
     doubts.extend(found);
     if let Some(field) = field {
-        doubts.extend(doubts_of_field(field, pair, limits));
+        doubts.extend(doubts_of_field(field, pair, unit, limits));
     }
     if let Some(view) = view {
         let has_line = field.is_some_and(|field| field.fitted.is_some());
@@ -229,7 +229,12 @@ fn ratio(a: Option<f64>, b: Option<f64>) -> Option<f64> {
 }
 
 /// What the scale field says against the scales that go to Split-Desktop.
-fn doubts_of_field(field: &FieldFacts, pair: ScalePair, limits: &Limits) -> Vec<Doubt> {
+fn doubts_of_field(
+    field: &FieldFacts,
+    pair: ScalePair,
+    unit: Option<LengthUnit>,
+    limits: &Limits,
+) -> Vec<Doubt> {
     let mut doubts = Vec::new();
     let limit = limits.off_line_share * 100.0;
     if let Some(line) = field.fitted
@@ -249,6 +254,13 @@ fn doubts_of_field(field: &FieldFacts, pair: ScalePair, limits: &Limits) -> Vec<
     });
     if let Some(percent) = widest.filter(|&percent| percent > limit) {
         doubts.push(Doubt::WideInterval { percent, limit });
+    }
+    let noise = field
+        .uncertainty
+        .as_ref()
+        .map(|uncertainty| uncertainty.noise);
+    if let Some(noise) = noise.filter(|noise| noise.is_doubtful()) {
+        doubts.push(Doubt::NoisyPoints { noise, unit });
     }
     doubts
 }

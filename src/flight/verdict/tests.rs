@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::*;
-use crate::scale::{Corner, FittedScale, Footprint, Interval, PhotoScale, Uncertainty};
+use crate::scale::{Corner, FittedScale, Footprint, Interval, PhotoScale, PointNoise, Uncertainty};
 
 const SIZE: (u32, u32) = (1280, 720);
 
@@ -314,6 +314,24 @@ fn the_field_is_judged_for_the_pair_in_use() {
     let ratio = [Doubt::Ratio { ratio: 14.5, limit }];
     assert_eq!(doubts(&steep, ScalePair::Fitted), ratio);
     assert_eq!(doubts(&steep, ScalePair::Corners), []);
+    // Points of one place lie apart by 0.9 % of their distance, and by more.
+    let mut noisy = field(1.0, 1.0, 1.0);
+    for (relative, is_said) in [(0.0089, false), (0.0091, true)] {
+        let noise = PointNoise {
+            height: 0.25,
+            relative,
+        };
+        if let Some(uncertainty) = &mut noisy.uncertainty {
+            uncertainty.noise = noise;
+        }
+        let unit = Some(LengthUnit::Metre);
+        let said = is_said.then_some(Doubt::NoisyPoints { noise, unit });
+        let wanted: Vec<Doubt> = said.into_iter().collect();
+        assert_eq!(
+            both.map(|pair| doubts(&noisy, pair)),
+            [wanted.clone(), wanted]
+        );
+    }
 }
 
 #[test]

@@ -24,6 +24,7 @@ use self::corners::CornerDraws;
 pub use self::draws::Draws;
 use self::line::LineErrors;
 pub use self::pixels::PixelErrors;
+pub use self::point_noise::PointNoise;
 use self::surface_error::{DepthErrors, plane_of, without_flying};
 use self::unseen::Unseen;
 use super::field::ScaleField;
@@ -107,6 +108,8 @@ pub struct Uncertainty {
     pub line_parts_percent: [Option<f64>; 4],
     /// The same of the corners' top and bottom.
     pub corner_parts_percent: [Option<f64>; 4],
+    /// How far points of one place lie apart; of a surface that came with its faces nothing is known of it.
+    pub noise: PointNoise,
 }
 
 /// What the uncertainty of a photo follows from.
@@ -166,6 +169,7 @@ impl Uncertainty {
             fitted_bottom: fitted(LineErrors::bottom),
             line_parts_percent,
             corner_parts_percent,
+            noise: errors.noise,
         })
     }
 

@@ -21,7 +21,7 @@ use glam::DVec3;
 use super::surface_error::{FLYING, LEAST_POINTS};
 
 /// The noise that clouds of `sample` have of themselves, at most, a share of the depth (0.33 to 0.45 %).
-pub(super) const USUAL: f64 = 0.0045;
+const USUAL: f64 = 0.0045;
 
 /// The mean square of what left-out points of pure noise are off, over that of the noise: what predicts them has some, too.
 const OF_LEFT_OUT: f64 = 1.5;
@@ -29,13 +29,16 @@ const OF_LEFT_OUT: f64 = 1.5;
 /// Of more triangles in a photo only so many are looked at.
 pub(super) const MOST_TRIANGLES: usize = 100_000;
 
-/// The noise of points in one photo.
+/// From here on it is said, and no scale is trusted: the interval is then 2 % and more to either side.
+const DOUBTFUL: f64 = 2.0 * USUAL;
+
+/// How far points of one place lie apart in what a photo shows of a cloud.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct PointNoise {
-    /// The standard deviation of the heights of points of one place, world units.
-    pub(super) height: f64,
+pub struct PointNoise {
+    /// The standard deviation of their heights, world units.
+    pub height: f64,
     /// What that is of the depth along the photo's rays, as a share.
-    pub(super) relative: f64,
+    pub relative: f64,
 }
 
 impl PointNoise {
@@ -51,6 +54,11 @@ impl PointNoise {
             height,
             relative: height * per_height.abs(),
         }
+    }
+
+    /// Whether it is so much that scales are not to be trusted.
+    pub fn is_doubtful(self) -> bool {
+        self.relative > DOUBTFUL
     }
 
     /// What is more than usual of it, as an error of the depth that all of the photo may share.
@@ -126,4 +134,168 @@ fn nugget(edges: &mut [Edge]) -> Option<f64> {
     let at_none = (rise * squares - length * products) / spread;
     // No surface is the smoother the longer its edges are.
     Some(at_none.clamp(0.0, of_shortest / f64::from(shortest.max(1))))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+    use crate::camera::Distortion;
+    use crate::jobs::Progress;
+    use crate::scale::field::{FieldGrid, ScaleField};
+    use crate::scale::uncertainty::surface_error::{DepthErrors, plane_of};
+    use crate::scale::uncertainty::tests::{camera, nadir};
+    use crate::scale::{Draws, Ground, GroundFinder, ImageKind, PhotoScale};
+    use crate::scale::{FittedScale, StatedErrors, UncertainPhoto, Uncertainty};
+    use crate::split_mix::SplitMix;
+    use crate::surface::{Cloud, Surface};
+
+    /// The triangles of points on a square of 40 around the middle, at `height(x, y)`.
+    fn cloud(places: impl Iterator<Item = DVec2>, mut height: impl FnMut(DVec2) -> f64) -> Surface {
+        let points = places.map(|at| at.extend(height(at))).collect();
+        Surface::new(Cloud {
+            points,
+            ..Cloud::default()
+        })
+        .unwrap()
+    }
+
+    fn random(count: usize) -> impl Iterator<Item = DVec2> {
+        let mut random = SplitMix(11);
+        (0..count).map(move |_| DVec2::new(random.unit() - 0.5, random.unit() - 0.5) * 40.0)
+    }
+
+    fn grid() -> impl Iterator<Item = DVec2> {
+        (0..80).flat_map(|x| (0..80).map(move |y| DVec2::new(x.into(), y.into()) / 2.0 - 20.0))
+    }
+
+    fn height_of(surface: &Surface) -> f64 {
+        let patches = surface.patches().seen(|_| false).unwrap();
+        let triangles: Vec<_> = patches
+            .iter()
+            .flat_map(crate::surface::Patch::triangles)
+            .collect();
+        PointNoise::of(&triangles, 0.1).height
+    }
+
+    /// Normal noise is found on a level place, a slope and on steps, and of a surface without noise none, however sparse: the
+    /// steps are squares of 2, every other one raised by 1.
+    #[test]
+    fn noise_is_told_from_slopes_and_steps() {
+        let step = |at: DVec2| {
+            f64::from(((at.x / 2.0).floor() + (at.y / 2.0).floor()).rem_euclid(2.0) as u8)
+        };
+        let slope = |at: DVec2| 0.8 * at.x - 0.3 * at.y;
+        let noise = 0.1;
+        for count in [2_000, 20_000] {
+            let shapes: [&dyn Fn(DVec2) -> f64; 3] = [&|_| 0.0, &slope, &step];
+            for (shape, off) in shapes.into_iter().zip([0.03, 0.15, 0.25]) {
+                assert!(height_of(&cloud(random(count), shape)) < 0.3 * noise);
+                let mut draws = Draws::new(2);
+                let noisy = cloud(random(count), |at| shape(at) + noise * draws.normal());
+                let found = height_of(&noisy);
+                assert!((found / noise - 1.0).abs() < off, "{found} of {count}");
+            }
+        }
+    }
+
+    /// Two points of one place are of two layers half of the time: the mean difference is half of what lies between them.
+    #[test]
+    fn two_layers_are_points_apart() {
+        let mut is_upper = SplitMix(8);
+        let layers = cloud(random(10_000), |_| {
+            if is_upper.unit() < 0.5 { 0.3 } else { 0.0 }
+        });
+        let found = height_of(&layers);
+        let wanted = 0.3 / 2.0 * PI.sqrt() / 2.0;
+        assert!((found / wanted - 1.0).abs() < 0.05, "{found} {wanted}");
+        // Wild points that are few do not count as much as they are high.
+        let mut is_wild = SplitMix(9);
+        let wild = cloud(random(10_000), |_| {
+            if is_wild.unit() < 0.01 { 50.0 } else { 0.0 }
+        });
+        assert!(height_of(&wild) < 0.01);
+    }
+
+    /// A grid has edges of two lengths: a slope's rise with them, and noise does not.
+    #[test]
+    fn a_grid_tells_it_too() {
+        assert!(height_of(&cloud(grid(), |at| 0.8 * at.x)) < 0.1);
+        let mut draws = Draws::new(4);
+        let found = height_of(&cloud(grid(), |_| 0.1 * draws.normal()));
+        assert!((found / 0.1 - 1.0).abs() < 0.1, "{found}");
+        // Of a lattice of equal triangles nothing is known, and of few points neither.
+        let side = 0.75_f64.sqrt();
+        let triangles: Vec<[DVec3; 3]> = (0..100)
+            .map(|at| {
+                [
+                    DVec3::new(at.into(), 0.0, 0.3),
+                    DVec3::new(f64::from(at) + 0.5, side, 0.0),
+                    DVec3::new(f64::from(at) + 1.0, 0.0, 0.1),
+                ]
+            })
+            .collect();
+        assert_eq!(PointNoise::of(&triangles, 1.0), PointNoise::default());
+        assert_eq!(PointNoise::of(&triangles[..2], 1.0), PointNoise::default());
+    }
+
+    /// From 10 above two layers, 0.3 apart, of which each point is of one by chance: the scale is 1000 px over 10 or over 9.7,
+    /// and nobody knows which. Both lie in the interval, where independent errors of thousands of points would hold neither.
+    #[test]
+    fn either_of_two_layers_is_in_the_interval() {
+        let mut is_upper = SplitMix(8);
+        let layers = cloud(random(20_000), |_| {
+            if is_upper.unit() < 0.5 { 0.3 } else { 0.0 }
+        });
+        let (camera, pose, image) = (
+            camera(Distortion::None),
+            nadir(10.0),
+            ImageKind::Undistorted,
+        );
+        let (grid, progress) = (FieldGrid::of_fit(&camera), Progress::default());
+        let field = ScaleField::compute(&camera, &pose, image, grid, &layers, &progress).unwrap();
+        let fitted = FittedScale::of(&field).unwrap();
+        let mut ground = GroundFinder::new(Ground::Auto, &layers);
+        let mut caster = layers.caster().unwrap();
+        let scale = PhotoScale::compute(&camera, &pose, image, &mut ground, &mut caster).unwrap();
+        let errors = StatedErrors::default();
+        let photo = UncertainPhoto {
+            field: &field,
+            fitted: Some(&fitted),
+            scale: &scale,
+            errors,
+        };
+        let uncertainty = Uncertainty::compute(&photo, &layers).unwrap();
+        assert!(uncertainty.noise.is_doubtful(), "{uncertainty:?}");
+        for end in [uncertainty.fitted_top, uncertainty.fitted_bottom] {
+            let end = end.unwrap();
+            assert!(end.low < 100.0 && end.high > 1000.0 / 9.7, "{end:?}");
+        }
+    }
+
+    /// What left-out points of noise are off is the noise's and that of three others around it.
+    #[test]
+    fn without_noise_nothing_is_left_of_noise() {
+        let mut draws = Draws::new(4);
+        let noisy = cloud(random(40_000), |_| 0.2 * draws.normal());
+        let (camera, pose, image) = (
+            camera(Distortion::None),
+            nadir(10.0),
+            ImageKind::Undistorted,
+        );
+        let (grid, progress) = (FieldGrid::of_fit(&camera), Progress::default());
+        let field = ScaleField::compute(&camera, &pose, image, grid, &noisy, &progress).unwrap();
+        let errors = DepthErrors::of(&field, plane_of(&field).unwrap(), &noisy);
+        let mean_square = |errors: &DepthErrors| {
+            let squares = errors.each.iter().map(|error| error.relative.powi(2));
+            squares.sum::<f64>() / errors.each.len() as f64
+        };
+        let (with, without) = (mean_square(&errors), mean_square(&errors.without_noise()));
+        assert!(
+            (with / 0.02_f64.powi(2) / OF_LEFT_OUT - 1.0).abs() < 0.15,
+            "{with}"
+        );
+        assert!(without < 0.15 * with, "{without} of {with}");
+    }
 }
