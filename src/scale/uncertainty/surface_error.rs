@@ -192,7 +192,7 @@ impl DepthErrors {
         Self {
             each: all.iter().filter_map(error).collect(),
             sparser: sparser.filter_map(|left_out| error(&left_out)).collect(),
-            noise: PointNoise::of(&triangles, plane.dot(up)),
+            noise: PointNoise::of(&triangles, pose.rotation * plane, plane.dot(up)),
         }
     }
 
