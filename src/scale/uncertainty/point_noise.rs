@@ -204,7 +204,7 @@ mod tests {
         let noise = 0.1;
         for count in [2_000, 20_000] {
             let shapes: [&dyn Fn(DVec2) -> f64; 3] = [&|_| 0.0, &slope, &step];
-            for (shape, off) in shapes.into_iter().zip([0.06, 0.2, 0.3]) {
+            for (shape, off) in shapes.into_iter().zip([0.15, 0.2, 0.3]) {
                 assert!(height_of(&cloud(random(count), shape)) < 0.3 * noise);
                 let mut draws = Draws::new(2);
                 let noisy = cloud(random(count), |at| shape(at) + noise * draws.normal());
