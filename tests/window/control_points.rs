@@ -355,6 +355,48 @@ fn a_placed_model_says_how_sure_its_poses_are() {
     assert!(errors.world_scale.is_some_and(|percent| percent > 0.0));
 }
 
+/// A flight that has a place takes a bar's length and stays there; a bar that tells it less surely than the flight does is refused.
+#[test]
+fn a_scale_bar_lengthens_a_flight_where_it_stands() {
+    let (_folder, mut desk) = desk();
+    mark_all(&mut desk);
+    desk.click(Role::Button, "Apply control points");
+    assert_eq!(desk.open().files.crs.as_deref(), Some("EPSG:32632"));
+    for point in 0..POINTS.len() {
+        step(&mut desk, ControlStep::Survey(point, None));
+    }
+    step(&mut desk, ControlStep::AddBar);
+    let bar = ScaleBar {
+        ends: ["P1".to_owned(), "P2".to_owned()],
+        // In a world of three times the model, 1 % longer than it was.
+        length: POINTS[0].distance(POINTS[1]) * 3.0 * 1.01,
+        unit: LengthUnit::Metre,
+    };
+    step(&mut desk, ControlStep::Bar(0, bar));
+    desk.click(Role::Button, "Apply control points");
+    assert!(desk.says("and these scale bars tell it to ±"));
+    assert_scales(&desk, 1000.0 / 30.0);
+
+    let middle = |desk: &Desk| {
+        let photos = desk.open().flight().parts().photos.iter();
+        photos.map(|photo| photo.pose.center).sum::<DVec3>() / 5.0
+    };
+    let before = middle(&desk);
+    let mut settings = desk.open().settings();
+    settings.errors.world_scale = Some(2.0);
+    desk.harness.state_mut().apply(Command::Set(settings));
+    desk.settle();
+    desk.click(Role::Button, "Apply control points");
+    assert_scales(&desk, 1000.0 / 30.0 / 1.01);
+    assert_eq!(desk.open().files.crs.as_deref(), Some("EPSG:32632"));
+    assert!(middle(&desk).distance(before) < 1e-6);
+    let stated = desk.open().settings().errors.world_scale.expect("stated");
+    assert!(stated < 1.0, "{stated}");
+    assert!(desk.says("1.0 % longer; it stays where it is"));
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert_scales(&desk, 1000.0 / 30.0);
+}
+
 #[test]
 fn scale_bars_alone_give_the_unit() {
     let (_folder, mut desk) = desk();

@@ -365,14 +365,10 @@ impl OpenFlight {
         let mut bars = list.bars.iter().filter(|bar| bar.ends.iter().all(is_end));
         let is_marked = bars.clone().next().is_some();
         let has_bar = bars.any(ScaleBar::is_known);
-        match (has_bar, &self.files.crs) {
-            (false, _) if is_marked => Some("Type how long the scale bar is in truth.".to_owned()),
-            (true, None) => None,
-            (true, Some(crs)) => Some(format!(
-                "The flight is in {crs} already, where a scale bar alone only compares: mark three surveyed points \
-                 in two photos each ({surveyed} so far)."
-            )),
-            (false, _) => Some(format!(
+        match has_bar {
+            false if is_marked => Some("Type how long the scale bar is in truth.".to_owned()),
+            true => None,
+            false => Some(format!(
                 "Mark three surveyed points in two photos each ({surveyed} so far), or both ends of a scale bar."
             )),
         }

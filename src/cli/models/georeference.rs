@@ -30,16 +30,11 @@ pub(in crate::cli) struct GeoreferenceArguments {
     #[arg(long, value_name = "FILE")]
     gcp: Option<PathBuf>,
     /// A known distance in metres between two points of the reconstruction,
-    /// "x1,y1,z1 x2,y2,z2 12.5", or between two control points, "name1 name2 12.5"; gives the scale
-    /// alone. May be repeated.
-    #[arg(
-        long,
-        value_name = "POINTS",
-        allow_hyphen_values = true,
-        conflicts_with = "positions"
-    )]
+    /// "x1,y1,z1 x2,y2,z2 12.5", or between two control points, "name1 name2 12.5"; gives the scale, and the photos' positions
+    /// the place, where there are any. May be repeated.
+    #[arg(long, value_name = "POINTS", allow_hyphen_values = true)]
     distance: Vec<KnownDistance>,
-    /// With --distance: turn the plane of the reconstruction's points level.
+    /// With --distance: turn the plane of the reconstruction's points level, instead of being placed by positions.
     #[arg(long, requires = "distance")]
     level: bool,
     /// The coordinate system of the world, and of lists that state none ("local" in the first line of OpenDroneMap's, or a table

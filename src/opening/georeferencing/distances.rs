@@ -1,9 +1,13 @@
-//! The scale alone, from known distances, in a frame that stays the package's own or is turned level.
+//! The scale from known distances: alone, in a frame that stays the package's own or is turned level; of what has a place in
+//! the world already, or from positions, about the middle of its cameras, so that it stays there. Receivers place a flight to
+//! metres and so tell the length of a metre to a percent; a bar on the ground tells it to a tenth of that, and no place.
 
 use glam::{DMat3, DVec3};
 
 use super::marks::{MarkedPoint, mark_error_px};
-use super::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, LengthResidual};
+use super::{
+    GeoreferenceRequest, Georeferenced, Known, KnownDistance, KnownEnds, LengthResidual, percent,
+};
 use crate::control::{Located, ScaleBar};
 use crate::fault::Fault;
 use crate::formats::Reconstruction;
@@ -20,12 +24,172 @@ pub(super) fn by_distances(
     marked: &[MarkedPoint],
     mut warnings: Vec<String>,
 ) -> Result<Georeferenced, Fault> {
-    if let Some(crs) = &request.crs {
-        return Err(Fault::new(
-            format!("distances give a scale, but no place in {crs}"),
-            "leave the coordinate system out, or give positions",
-        ));
+    let lengths = known_lengths(distances, marked)?;
+    let numbers: Vec<KnownLength> = lengths.iter().map(|(_, length)| *length).collect();
+    let found = scale_of_lengths(&numbers)?;
+    let unit = match (&reconstruction.crs, reconstruction.unit) {
+        (Some(_), Some(unit)) => unit,
+        _ => LengthUnit::Metre,
+    };
+    let scale = found.scale / unit.metres();
+    let middle = match (&reconstruction.crs, &request.crs) {
+        (Some(_), _) => Some(middle_of(reconstruction)),
+        (None, None) => None,
+        (None, Some(crs)) => {
+            return Err(Fault::new(
+                format!("distances give a scale, but no place in {crs}"),
+                "leave the coordinate system out, or give positions",
+            ));
+        }
+    };
+    let similarity = match middle {
+        Some(middle) => {
+            warnings.push(format!(
+                "the known distances make the flight {}; it stays where it is, the middle of its cameras",
+                longer(scale)
+            ));
+            Similarity::new(scale, DMat3::IDENTITY, middle - middle * scale)
+        }
+        None => {
+            let rotation = turned(reconstruction, request.level)?;
+            warnings.push(
+                if request.level {
+                    "the scale is known, not the place: up is across the plane of the reconstruction's points, and north is not known"
+                } else {
+                    "the scale is known, not the place: the axes stay as the package left them, and z may not be up (the ground can level it: --level, in the window \"Level by the ground\")"
+                }
+                .to_owned(),
+            );
+            Similarity::new(scale, rotation, DVec3::ZERO)
+        }
+    };
+    Ok(Georeferenced {
+        similarity,
+        crs: reconstruction.crs.clone(),
+        unit,
+        heights: None,
+        positions: Vec::new(),
+        lengths: fitted(lengths, found.scale),
+        rms: None,
+        scale_error: found.scale_error,
+        scale_interval: found.scale_interval,
+        rotation_error_degrees: None,
+        errors: StatedErrors::default(),
+        warnings,
+    })
+}
+
+/// The middle of the cameras: what the positions of receivers, which put them there, leave where it is if the length changes.
+fn middle_of(reconstruction: &Reconstruction) -> DVec3 {
+    let photos = &reconstruction.photos;
+    let sum: DVec3 = photos.iter().map(|photo| photo.pose.center).sum();
+    sum / photos.len().max(1) as f64
+}
+
+/// A frame's turn to level, where that is asked for.
+fn turned(reconstruction: &Reconstruction, level: bool) -> Result<DMat3, Fault> {
+    if !level {
+        return Ok(DMat3::IDENTITY);
     }
+    let cameras = reconstruction.photos.iter();
+    let cameras: Vec<DVec3> = cameras.map(|photo| photo.pose.center).collect();
+    levelled(reconstruction.cloud.points.clone(), &cameras).ok_or_else(|| {
+        Fault::new(
+            "the reconstruction has no plane of points to level by",
+            "leave the axes as they are (no --level), or give positions",
+        )
+    })
+}
+
+/// Gives a model that positions have placed the length of known distances, where they are surer than the positions, about the
+/// middle of what it was placed by; `known` are the positions in the order of `result`.
+pub(super) fn lengthen(
+    result: &mut Georeferenced,
+    known: &[Known],
+    distances: &[KnownDistance],
+    marked: &[MarkedPoint],
+) -> Result<(), Fault> {
+    let lengths = known_lengths(distances, marked)?;
+    let numbers: Vec<KnownLength> = lengths.iter().map(|(_, length)| *length).collect();
+    let found = scale_of_lengths(&numbers)?;
+    let by_positions = (result.similarity, result.scale_interval);
+    let scale = found.scale / result.unit.metres();
+    let ratio = scale / by_positions.0.scale;
+    // One distance between points that nobody marked is what somebody says.
+    let is_surer = match (found.scale_interval, by_positions.1) {
+        (Some(distances), Some(positions)) => distances <= positions,
+        _ => true,
+    };
+    let sure = |interval: Option<f64>| {
+        interval.map_or_else(
+            || "nobody knows how surely".to_owned(),
+            |interval| format!("± {}", percent(interval)),
+        )
+    };
+    let said = format!(
+        "the known distances ({}) make it {} than the positions ({})",
+        sure(found.scale_interval),
+        longer(ratio),
+        sure(by_positions.1)
+    );
+    let room = [found.scale_interval, by_positions.1].map(Option::unwrap_or_default);
+    let contradict = match (ratio - 1.0).abs() > room[0].hypot(room[1]) {
+        true => {
+            ": they contradict each other; look whether it was measured between other points, or in another unit"
+        }
+        false => "",
+    };
+    result.warnings.push(match is_surer {
+        true => format!("{said}, which place it{contradict}"),
+        false => format!("{said}, which are surer and give it its length{contradict}"),
+    });
+    if is_surer {
+        let used = (known.iter().zip(&result.positions)).filter(|(_, position)| position.used);
+        let used: Vec<DVec3> = used.map(|(known, _)| known.pair.source).collect();
+        let middle = used.iter().sum::<DVec3>() / used.len().max(1) as f64;
+        let Similarity { rotation, .. } = by_positions.0;
+        let translation = by_positions.0.apply(middle) - rotation * middle * scale;
+        result.similarity = Similarity::new(scale, rotation, translation);
+        for (known, position) in known.iter().zip(&mut result.positions) {
+            position.residual = known.pair.target - result.similarity.apply(known.pair.source);
+        }
+        let squares = result.positions.iter().filter(|position| position.used);
+        let squares: f64 = squares
+            .map(|position| position.residual.length_squared())
+            .sum();
+        result.rms = Some((squares / used.len().max(1) as f64).sqrt());
+        result.scale_error = found.scale_error;
+        result.scale_interval = found.scale_interval;
+    }
+    result.lengths = fitted(lengths, result.similarity.scale * result.unit.metres());
+    Ok(())
+}
+
+/// By how much a scale makes lengths longer, in words.
+fn longer(scale: f64) -> String {
+    let off = scale - 1.0;
+    format!(
+        "{} {}",
+        percent(off.abs()),
+        if off < 0.0 { "shorter" } else { "longer" }
+    )
+}
+
+/// Known distances as they fit at so many metres to a unit of the reconstruction.
+fn fitted(lengths: Vec<(String, KnownLength)>, metres: f64) -> Vec<LengthResidual> {
+    let lengths = lengths.into_iter().map(|(name, length)| LengthResidual {
+        name,
+        known: length.known,
+        fitted: length.found * metres,
+    });
+    lengths.collect()
+}
+
+/// Known distances with what they are in the reconstruction, and what they are called.
+fn known_lengths(
+    distances: &[KnownDistance],
+    marked: &[MarkedPoint],
+) -> Result<Vec<(String, KnownLength)>, Fault> {
     let point = |name: &String| {
         let found = marked.iter().find(|point| point.name == *name);
         found.map(|point| &point.found).ok_or_else(|| {
@@ -55,49 +219,7 @@ pub(super) fn by_distances(
             ),
         });
     }
-    let numbers: Vec<KnownLength> = lengths.iter().map(|(_, length)| *length).collect();
-    let found = scale_of_lengths(&numbers)?;
-    let rotation = match request.level {
-        true => {
-            let cameras = reconstruction.photos.iter();
-            let cameras: Vec<DVec3> = cameras.map(|photo| photo.pose.center).collect();
-            levelled(reconstruction.cloud.points.clone(), &cameras).ok_or_else(|| {
-                Fault::new(
-                    "the reconstruction has no plane of points to level by",
-                    "leave the axes as they are (no --level), or give positions",
-                )
-            })?
-        }
-        false => DMat3::IDENTITY,
-    };
-    warnings.push(
-        if request.level {
-            "the scale is known, not the place: up is across the plane of the reconstruction's points, and north is not known"
-        } else {
-            "the scale is known, not the place: the axes stay as the package left them, and z may not be up (the ground can level it: --level, in the window \"Level by the ground\")"
-        }
-        .to_owned(),
-    );
-    Ok(Georeferenced {
-        similarity: Similarity::new(found.scale, rotation, DVec3::ZERO),
-        crs: None,
-        unit: LengthUnit::Metre,
-        heights: None,
-        positions: Vec::new(),
-        lengths: (lengths.into_iter())
-            .map(|(name, length)| LengthResidual {
-                name,
-                known: length.known,
-                fitted: length.found * found.scale,
-            })
-            .collect(),
-        rms: None,
-        scale_error: found.scale_error,
-        scale_interval: found.scale_interval,
-        rotation_error_degrees: None,
-        errors: StatedErrors::default(),
-        warnings,
-    })
+    Ok(lengths)
 }
 
 /// A known distance between two points that are marked, `pixel` off in photos.

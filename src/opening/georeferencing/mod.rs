@@ -54,7 +54,8 @@ pub struct GeoreferenceRequest {
     pub control_points: Option<PathBuf>,
     /// The same as they were marked in the window, instead of a list.
     pub marked: Option<ControlList>,
-    /// Known distances, for the scale alone.
+    /// Known distances: the scale. The place is then that of [`positions`](Self::positions) or of the photos' own, where there
+    /// are any, it is not to be level, and no points were marked in the window.
     pub distances: Vec<KnownDistance>,
     /// The coordinate system of the world, and of lists that state none.
     pub crs: Option<String>,
@@ -310,26 +311,34 @@ pub fn georeference_model(
         bars = distances::of_bars(&points.bars, &marked, &mut warnings);
     }
     let surveyed = marked.iter().filter(|p| p.position.is_some()).count();
-    let distances = match surveyed < LEAST_SURVEYED && request.positions.is_none() {
+    // Surveyed points tell the length better than a distance between two.
+    let distances = match surveyed < LEAST_SURVEYED {
         true if request.distances.is_empty() => &bars,
         _ => &request.distances,
     };
-    if !request.distances.is_empty() {
-        let others = match (surveyed, &request.positions) {
-            (LEAST_SURVEYED.., _) => Some("the surveyed control points"),
-            (_, Some(_)) => Some("the listed positions"),
-            _ if !reconstruction.measured_positions.is_empty() => Some("the photos' positions"),
-            _ => None,
-        };
-        warnings.extend(others.map(|others| {
-            format!("the known distance decides alone, and {others} are not used: leave --distance out to be placed by them")
-        }));
+    if !request.distances.is_empty() && surveyed >= LEAST_SURVEYED {
+        warnings.push("the known distance decides alone, and the surveyed control points are not used: leave --distance out to be placed by them".to_owned());
     }
-    if !distances.is_empty() {
+    // Photos that say nothing are no fault here: there are distances.
+    let stays = reconstruction.crs.is_some() || request.level || request.marked.is_some();
+    let own = || match stays || surveyed >= LEAST_SURVEYED {
+        true => None,
+        false => receivers::positions(path, reconstruction, request.photos.as_deref())
+            .ok()
+            .flatten(),
+    };
+    let placing = match (distances.is_empty(), &request.positions) {
+        (true, _) => None,
+        (false, Some(list)) => Some((list.clone(), read_positions(list)?)),
+        (false, None) => own(),
+    };
+    if !distances.is_empty() && placing.is_none() {
         return distances::by_distances(reconstruction, request, distances, &marked, warnings)
             .map_err(|fault| FileError::new(path, fault));
     }
+    let points = points.filter(|_| distances.is_empty());
     let positions = match (&request.positions, &points) {
+        _ if placing.is_some() => placing,
         (Some(list), _) => Some((list.clone(), read_positions(list)?)),
         (None, None) => receivers::positions(path, reconstruction, request.photos.as_deref())?,
         // Nobody asked for the photos' own: those that the package kept are compared, where the points' world has a place on
@@ -385,7 +394,21 @@ pub fn georeference_model(
             of_photos(reconstruction, positions, &world, &mut warnings).map_err(at_list)?;
         known.extend(photos);
     }
-    let mut result = by_positions(&known, points.is_some()).map_err(blame)?;
+    let mut result = match by_positions(&known, points.is_some()) {
+        // Nobody asked to be placed by the photos' own.
+        Err(fault) if !distances.is_empty() && request.positions.is_none() => {
+            warnings.push(format!(
+                "the photos' own positions do not place it: {fault}"
+            ));
+            let request = GeoreferenceRequest {
+                crs: None,
+                ..request.clone()
+            };
+            return distances::by_distances(reconstruction, &request, distances, &marked, warnings)
+                .map_err(|fault| FileError::new(path, fault));
+        }
+        fitted => fitted.map_err(blame)?,
+    };
     if points.is_some() && positions.is_some() {
         warnings
             .push("the control points decide; the photos' positions are only compared".to_owned());
@@ -396,8 +419,14 @@ pub fn georeference_model(
     result.heights = Some(world.heights().to_owned());
     result.crs = world.name().map(str::to_owned);
     result.unit = world.unit();
-    let metres = result.similarity.scale * result.unit.metres();
-    result.lengths = distances::compared(&bars, &marked, metres);
+    if distances.is_empty() {
+        let metres = result.similarity.scale * result.unit.metres();
+        result.lengths = distances::compared(&bars, &marked, metres);
+    } else {
+        distances::lengthen(&mut result, &known, distances, &marked)
+            .map_err(|fault| FileError::new(path, fault))?;
+        warnings.append(&mut result.warnings);
+    }
     let far = result
         .positions
         .iter()
@@ -459,12 +488,33 @@ pub fn georeference_flight(
         cameras: parts.cameras.clone(),
         photos: photos.collect(),
         sizes: Sizes::Known,
+        crs: request.crs.clone(),
+        unit: Some(parts.unit),
         ..Reconstruction::default()
     };
     if request.level {
         reconstruction.cloud.points = parts.surface.vertices().collect();
     }
-    georeference_model(file, &reconstruction, request)
+    let found = georeference_model(file, &reconstruction, request)?;
+    let stated = (parts.errors.world_scale).map(|percent| percent / 100.0 * TO_95_PERCENT);
+    match (stated, found.scale_interval) {
+        (Some(stated), Some(bars))
+            if found.crs.is_some() && found.positions.is_empty() && stated < bars =>
+        {
+            Err(FileError::new(
+                file,
+                Fault::new(
+                    format!(
+                        "the flight's length is known to ± {} (95 %), and these scale bars tell it to ± {} only",
+                        percent(stated),
+                        percent(bars)
+                    ),
+                    "mark their ends in more photos or sharper, or measure longer ones",
+                ),
+            ))
+        }
+        _ => Ok(found),
+    }
 }
 
 /// A position that is known in both frames.

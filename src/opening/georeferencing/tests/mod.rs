@@ -425,6 +425,108 @@ fn a_distance_and_level() {
     }
 }
 
+/// Twelve receivers half a metre too high and too low in turn, on a flight that is 2 % larger than it was: they place it, and a
+/// distance gives its length, about the middle of theirs.
+#[test]
+fn a_distance_gives_the_length_and_positions_the_place() {
+    let middle = centers().iter().sum::<DVec3>() / 12.0;
+    let list = |off: f64| {
+        let mut list = "EPSG:32632\n".to_owned();
+        for (i, center) in centers().into_iter().enumerate() {
+            let up = if i % 2 == 0 { off } else { -off };
+            let at = middle + (center - middle) * (1.0 + off / 25.0) + DVec3::Z * up;
+            writeln!(list, "IMG_{i:04}.JPG {} {} {}", at.x, at.y, at.z).unwrap();
+        }
+        List::new(&list)
+    };
+    let receivers = list(0.5);
+    let one = || vec!["0,0,0 0,0,1 7.5".parse().unwrap()];
+    let request = GeoreferenceRequest {
+        positions: Some(receivers.path()),
+        distances: one(),
+        ..GeoreferenceRequest::default()
+    };
+    let found = run(&request).unwrap();
+    assert!((found.similarity.scale - 7.5).abs() < 1e-12);
+    assert_eq!(
+        (found.crs.as_deref(), found.used()),
+        (Some("EPSG:32632"), 12)
+    );
+    let off: DVec3 = found
+        .positions
+        .iter()
+        .map(|position| position.residual)
+        .sum();
+    assert!(off.length() < 1e-6, "{off}");
+    let at = found.similarity.apply(photo(5, centers()[5]).pose.center);
+    assert!(at.distance(centers()[5]) < 0.5, "{at}");
+    // Half a metre up or down, and 2 % of 25 m to the side.
+    assert!((0.5..1.0).contains(&found.rms.unwrap()), "{found:?}");
+    let said = found.warnings.join("; ");
+    assert!(said.contains("shorter than the positions (± "), "{said}");
+    assert!(
+        said.contains("which place it") && !said.contains("contradict"),
+        "{said}"
+    );
+    assert_eq!(found.scale_error, None);
+    // One in feet is none in metres.
+    let feet = GeoreferenceRequest {
+        distances: vec!["0,0,0 0,0,1 24.606".parse().unwrap()],
+        ..request.clone()
+    };
+    assert!(
+        run(&feet)
+            .unwrap()
+            .warnings
+            .join("; ")
+            .contains("they contradict each other")
+    );
+
+    // Good receivers know the length better than distances that do not agree.
+    let exact = list(0.0);
+    let request = GeoreferenceRequest {
+        positions: Some(exact.path()),
+        distances: vec![
+            "0,0,0 0,0,1 7.5".parse().unwrap(),
+            "0,0,0 0,1,0 7.7".parse().unwrap(),
+        ],
+        ..request
+    };
+    let found = run(&request).unwrap();
+    assert_is_truth(&found.similarity, 1e-6);
+    assert!(
+        found.warnings.join("; ").contains("which are surer"),
+        "{found:?}"
+    );
+    assert!((found.lengths[1].fitted - 7.5).abs() < 1e-4, "{found:?}");
+
+    // What the package kept places it as well, unless it is to be level; on a line it does not, which is said.
+    let utm = Crs::understand("EPSG:32632").unwrap();
+    let mut model = reconstruction();
+    let kept = |at: &dyn Fn(DVec3) -> DVec3| -> Vec<MeasuredPosition> {
+        let photos = reconstruction().photos.into_iter().zip(centers());
+        photos
+            .map(|(photo, center)| MeasuredPosition {
+                photo: photo.name,
+                position: utm.to_geographic(at(center)).unwrap(),
+            })
+            .collect()
+    };
+    model.measured_positions = kept(&|center| center);
+    let request = GeoreferenceRequest {
+        distances: one(),
+        ..GeoreferenceRequest::default()
+    };
+    let placed = georeference_model(Path::new("model"), &model, &request).unwrap();
+    assert_is_truth(&placed.similarity, 1e-6);
+    assert_eq!(placed.crs.as_deref(), Some("EPSG:32632"));
+    model.measured_positions = kept(&|center| center.with_x(435_200.0).with_z(460.0));
+    let alone = georeference_model(Path::new("model"), &model, &request).unwrap();
+    assert_eq!((alone.crs, alone.similarity.scale), (None, 7.5));
+    let said = alone.warnings.join("; ");
+    assert!(said.contains("positions do not place it: "), "{said}");
+}
+
 #[test]
 fn what_is_refused() {
     let sentence = |text: &str, crs: Option<&str>| {
