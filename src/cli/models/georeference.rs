@@ -35,7 +35,7 @@ pub(in crate::cli) struct GeoreferenceArguments {
     #[arg(long, value_name = "POINTS", allow_hyphen_values = true)]
     distance: Vec<KnownDistance>,
     /// With --distance: turn the plane of the reconstruction's points level, instead of being placed by positions.
-    #[arg(long, requires = "distance")]
+    #[arg(long)]
     level: bool,
     /// The coordinate system of the world, and of lists that state none ("local" in the first line of OpenDroneMap's, or a table
     /// without one): EPSG:n, WKT or a PROJ text; without it that of the list, or the zone of UTM that the positions lie in.

@@ -203,12 +203,14 @@ mod tests {
         let slope = |at: DVec2| 0.8 * at.x - 0.3 * at.y;
         let noise = 0.1;
         for count in [2_000, 20_000] {
-            let shapes: [&dyn Fn(DVec2) -> f64; 3] = [&|_| 0.0, &slope, &step];
-            for (shape, off) in shapes.into_iter().zip([0.15, 0.2, 0.3]) {
-                assert!(height_of(&cloud(random(count), shape)) < 0.3 * noise);
+            let plane = DVec3::new(-0.8, 0.3, 1.0);
+            let shapes: [(&dyn Fn(DVec2) -> f64, DVec3); 3] =
+                [(&|_| 0.0, DVec3::Z), (&slope, plane), (&step, DVec3::Z)];
+            for ((shape, plane), off) in shapes.into_iter().zip([0.15, 0.15, 0.3]) {
+                assert!(height_over(&cloud(random(count), shape), plane) < 0.3 * noise);
                 let mut draws = Draws::new(2);
                 let noisy = cloud(random(count), |at| shape(at) + noise * draws.normal());
-                let found = height_of(&noisy);
+                let found = height_over(&noisy, plane);
                 assert!((found / noise - 1.0).abs() < off, "{found} of {count}");
             }
         }
