@@ -86,6 +86,7 @@ impl Remedy {
             | Doubt::OffSurface(_)
             | Doubt::NoPoint(_)
             | Doubt::NoisyPoints { .. }
+            | Doubt::Wall { .. }
             | Doubt::RoundedPoints { .. } => Some(Self::AddSurface),
             _ => None,
         }

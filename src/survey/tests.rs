@@ -161,6 +161,28 @@ fn holes_are_gaps() {
     near(found.surface_area, 12.0, 1e-9);
 }
 
+/// A level place of points 1 apart without those within 15 of its middle: the triangulation bridges the hole, and the part of
+/// it under triangles of 10 times the longest edge of the others is told. Where all are there, none is.
+#[test]
+fn a_bridged_hole_is_told() {
+    let bridged = |radius: f64| {
+        let places = (0..60).flat_map(|x| (0..60).map(move |y| (f64::from(x), f64::from(y))));
+        let points = places.filter(|(x, y)| (x - 30.0).hypot(y - 30.0) >= radius);
+        let surface = cloud(points.map(|(x, y)| DVec3::new(x, y, 0.0)));
+        let polygon = rectangle([5.0, 5.0], [55.0, 55.0]);
+        volume(&surface, &polygon, Base::Height(ORIGIN.z))
+            .unwrap()
+            .bridged
+    };
+    let hole = std::f64::consts::PI * 15.0 * 15.0 / 2500.0;
+    let found = bridged(15.0);
+    assert!(
+        found > 0.6 * hole && found < 1.02 * hole,
+        "{found} of {hole}"
+    );
+    assert_eq!(bridged(0.0), 0.0);
+}
+
 #[test]
 fn angle_of_repose_of_a_cone() {
     let height = 10.0 * 37_f64.to_radians().tan();

@@ -1,5 +1,7 @@
 //! Volume and area of a surface inside a polygon, over a base.
 
+use std::collections::BTreeMap;
+
 use glam::{DVec2, DVec3};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
@@ -38,9 +40,15 @@ pub struct Volume {
     /// The lowest and the highest of the surface inside the polygon, elevations in the world; `None`
     /// where there is no surface.
     pub heights: Option<[f64; 2]>,
+    /// The part of the plan, 0 to 1, where triangles of a cloud are longer than [`BRIDGE`] times the median one: no points lie
+    /// there, and the volume is what a plane between the rims of the hole makes of it. 0 of a mesh.
+    pub bridged: f64,
     /// What the volumes are over.
     pub base: BaseFound,
 }
+
+/// Edges of so many times the median one bridge a hole: between points of chance none is longer than five times.
+pub const BRIDGE: f64 = 10.0;
 
 impl Volume {
     /// Fill less cut: the change.
@@ -49,27 +57,84 @@ impl Volume {
     }
 }
 
+/// A part of the plan from faces that look up less those that look down: of closed bodies it is rounding.
+fn part_of_plan(part: f64) -> f64 {
+    if part.abs() < 1e-9 {
+        0.0
+    } else {
+        part.min(1.0)
+    }
+}
+
 /// What was found of some triangles.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 struct Found {
     /// Of the surface, over a plane.
     surface: Sums,
     /// Of surface and base where both are.
     both: Sums,
     heights: Option<[f64; 2]>,
+    edges: Edges,
+}
+
+/// Triangles by the length of their longest edges over (x, y), in eighths of powers of two.
+#[derive(Debug, Clone, Default)]
+struct Edges(BTreeMap<i32, (u64, f64)>);
+
+impl Edges {
+    /// Adds a triangle of which this area counts.
+    fn add(&mut self, corners: [DVec2; 3], area: f64) {
+        let [a, b, c] = corners;
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        // `as` saturates: a triangle without length is among the shortest.
+        let step = (longest.log2() * 8.0).floor() as i32;
+        let (count, sum) = self.0.entry(step).or_default();
+        *count += 1;
+        *sum += area;
+    }
+
+    fn and(mut self, other: Self) -> Self {
+        for (step, (count, area)) in other.0 {
+            let entry = self.0.entry(step).or_default();
+            *entry = (entry.0 + count, entry.1 + area);
+        }
+        self
+    }
+
+    /// The area of those that are longer than [`BRIDGE`] times the median one.
+    fn bridged(&self) -> f64 {
+        let all: u64 = self.0.values().map(|(count, _)| count).sum();
+        let mut passed = 0;
+        let median = self.0.iter().find(|(_, (count, _))| {
+            passed += count;
+            2 * passed >= all
+        });
+        let Some((median, _)) = median else {
+            return 0.0;
+        };
+        let longest = median.saturating_add((BRIDGE.log2() * 8.0) as i32);
+        let longer = self.0.range(longest..).skip(1);
+        longer.map(|(_, (_, area))| area).sum()
+    }
 }
 
 impl Found {
     fn and(self, other: Self) -> Self {
-        let heights = match (self.heights, other.heights) {
-            (Some(a), Some(b)) => Some([a[0].min(b[0]), a[1].max(b[1])]),
-            (one, another) => one.or(another),
-        };
+        let heights = joined(self.heights, other.heights);
         Self {
             surface: self.surface.and(other.surface),
             both: self.both.and(other.both),
             heights,
+            edges: self.edges.and(other.edges),
         }
+    }
+}
+
+/// The lowest and the highest of two ranges.
+fn joined(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some([a[0].min(b[0]), a[1].max(b[1])]),
+        (one, another) => one.or(another),
     }
 }
 
@@ -109,6 +174,7 @@ pub fn volume(surface: &Surface, polygon: &Polygon, base: Base<'_>) -> Result<Vo
         bounds.max.truncate().cmplt(area[0]).any() || bounds.min.truncate().cmpgt(area[1]).any()
     };
     let patches = surface.patches().seen(misses)?;
+    let is_cloud = surface.is_cloud();
     let of_patch = |patch: &Patch<'_>| {
         let mut found = Found::default();
         for corners in patch.triangles() {
@@ -126,17 +192,19 @@ pub fn volume(surface: &Surface, polygon: &Polygon, base: Base<'_>) -> Result<Vo
                 if piece.is_empty() {
                     continue;
                 }
+                let before = found.surface.plan;
                 found.surface.add(&piece);
+                if is_cloud {
+                    let area = found.surface.plan - before;
+                    found.edges.add(corners.map(DVec3::truncate), area);
+                }
                 if let Some(overlay) = &overlay {
                     overlay.add(&piece, &mut found.both);
                 }
                 let heights = piece.iter().map(|corner| corner.at.z);
                 let lowest = heights.clone().fold(f64::INFINITY, f64::min);
                 let highest = heights.fold(f64::NEG_INFINITY, f64::max);
-                found = found.and(Found {
-                    heights: Some([lowest, highest]),
-                    ..Found::default()
-                });
+                found.heights = joined(found.heights, Some([lowest, highest]));
             }
         }
         found
@@ -164,12 +232,13 @@ pub fn volume(surface: &Surface, polygon: &Polygon, base: Base<'_>) -> Result<Vo
         fill: sums.above,
         cut: sums.below,
         plan_area,
-        covered: (sums.plan / plan_area).min(1.0),
+        covered: part_of_plan(sums.plan / plan_area),
         bodies: own.closed,
         doubtful: own.doubtful.max(under.doubtful),
         surface_area: found.surface.along,
         overhang: sums.down / plan_area,
         heights: found.heights.map(|heights| heights.map(|z| z + origin.z)),
+        bridged: found.edges.bridged() / plan_area,
         base: base_found,
     })
 }

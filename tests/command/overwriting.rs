@@ -40,6 +40,7 @@ fn desk() -> TempDir {
     let sizes = "method,size_mm,percent_passing\nsieve,10,5\nsieve,20,30\nsieve,40,70\nsieve,80,99\n\
                  cloud,10,6\ncloud,20,33\ncloud,40,74\ncloud,80,99.5\n";
     fs::write(at("sizes.csv"), sizes).expect("written");
+    fs::write(at("places.csv"), "x,y\n-0.4,-0.3\n0.4,-0.3\n0.4,0.3\n").expect("written");
     let values = "trial,value\na,1\na,2\na,3\nb,2\nb,4\nb,7\n";
     fs::write(at("values.csv"), values).expect("written");
     let times = "step,object,cloud\nflight,12,10\nspheres,3,0\n";
@@ -123,7 +124,7 @@ fn no_command_writes_over_what_it_reads() {
     let desk = desk();
     let folder = desk.path();
     // Commands, the ending that their output has to have, and what they read.
-    let cases: [(&str, &str, &[&str]); 9] = [
+    let cases: [(&str, &str, &[&str]); 12] = [
         (
             "scales flight.toml -o",
             "csv",
@@ -155,6 +156,21 @@ fn no_command_writes_over_what_it_reads() {
             &["values.csv"],
         ),
         ("effort times.csv -o", "csv", &["times.csv"]),
+        (
+            "profile flight.toml --line places.csv -o",
+            "csv",
+            &["places.csv"],
+        ),
+        (
+            "volume flight.toml --polygon places.csv -o",
+            "csv",
+            &["places.csv"],
+        ),
+        (
+            "map flight.toml --polygon places.csv -o",
+            "svg",
+            &["places.csv"],
+        ),
     ];
     for (command, ending, inputs) in cases {
         for input in inputs {
@@ -162,7 +178,12 @@ fn no_command_writes_over_what_it_reads() {
             let before = contents(folder);
             for name in names {
                 // A figure's and a report's name are looked at first.
-                let must_end = command.ends_with("--figure") || command.ends_with("--report");
+                let ends = [
+                    "--figure",
+                    "--report",
+                    "map flight.toml --polygon places.csv -o",
+                ];
+                let must_end = ends.iter().any(|end| command.ends_with(end));
                 if must_end && !name.ends_with(ending) {
                     continue;
                 }

@@ -168,18 +168,27 @@ fn a_photo_to_be_turned_is_said_and_exported_as_it_lies() {
     let to = folder.path().join("export");
     let flight = folder.path().join("flight.toml");
     let [flight, to_text] = [&flight, &to].map(|path| path.to_str().expect("UTF-8"));
-    let output = crate::common::fragscale(&["export", flight, "--to", to_text]);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.contains("to show it turned (orientation 3)"), "{said}");
-    let made = fs::read(to.join("photos/IMG_0001.jpg")).expect("exported");
-    let fields = exif(&made);
-    let orientation = fields
-        .iter()
-        .find(|(tag, ..)| *tag == exif::Tag::Orientation);
-    assert!(
-        orientation.expect("kept").2.contains("row 0 at top"),
-        "{fields:?}"
-    );
+    let sample_text = fs::read_to_string(flight).expect("the flight");
+    let mut made = Vec::new();
+    for image in ["", "\n[scale]\nimage = \"as-shot\"\n"] {
+        fs::write(flight, sample_text.clone() + image).expect("written");
+        let output = crate::common::fragscale(&["export", flight, "--to", to_text]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(said.contains("to show it turned (orientation 3)"), "{said}");
+        made = fs::read(to.join("photos/IMG_0001.jpg")).expect("exported");
+        let fields = exif(&made);
+        let orientation = fields
+            .iter()
+            .find(|(tag, ..)| *tag == exif::Tag::Orientation);
+        assert!(
+            orientation.expect("kept").2.contains("row 0 at top"),
+            "{fields:?}"
+        );
+    }
+    // As shot it is the file but for that mark.
+    let shot = fs::read(photos.join("IMG_0001.jpg")).expect("a photo");
+    let differ = shot.iter().zip(&made).filter(|(a, b)| a != b).count();
+    assert_eq!((shot.len(), differ), (made.len(), 1));
 }
 
 /// The command as a user gives it, and everything that it wrote.

@@ -11,7 +11,7 @@ use crate::exports::{self, MeasuredUnit, ProfileReport};
 use crate::fault::Fault;
 use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::opening::places;
+use crate::opening::{file_of_places, places};
 use crate::survey::Profile;
 
 #[derive(Debug, Args)]
@@ -35,7 +35,10 @@ pub(in crate::cli) fn profile(
     arguments: &ProfileArguments,
     progress: &Progress,
 ) -> Result<Answer, String> {
-    let mut outputs = arguments.answer.outputs(arguments.flight.files())?;
+    let line_file = arguments.line.as_deref().and_then(file_of_places);
+    let mut outputs = arguments
+        .answer
+        .outputs(arguments.flight.files().chain(&line_file))?;
     let (line, mut warnings) = match (&arguments.line, arguments.from, arguments.to) {
         (Some(line), ..) => places(line)?,
         (None, from, to) => (from.into_iter().chain(to).collect(), Vec::new()),

@@ -28,7 +28,7 @@ const OVERLAY_SIDE: u32 = 1600;
 const THUMBNAIL_SIDE: u32 = 480;
 
 /// Raised when the same inputs are to give other pictures.
-const PICTURES_VERSION: u32 = 6;
+const PICTURES_VERSION: u32 = 7;
 
 /// What the pictures of a photo depend on.
 pub(super) struct PictureSource<'a> {
@@ -87,8 +87,8 @@ impl PictureSource<'_> {
     }
 
     /// The files, with their names below the exported folder, of a photo and its file's bytes. The photo as shot is the file as it
-    /// is, where nothing is painted over; else it has, as an undistorted one has, the format, the EXIF and the colour profile of its file, but for
-    /// EXIF's mark to turn it: top and bottom are those of the pixels as they lie.
+    /// is, where nothing is painted over; else it has, as an undistorted one has, the format, the EXIF and the colour profile of its file.
+    /// None has EXIF's mark to turn it: top and bottom are those of the pixels as they lie.
     ///
     /// # Errors
     /// Where the photo is of another size than its camera.
@@ -101,7 +101,10 @@ impl PictureSource<'_> {
         let camera = self.camera;
         picture::check_size_of(&photo.image, camera)?;
         let (image, file) = match self.image {
-            ImageKind::AsShot if self.left_out.is_empty() => (photo.image, bytes),
+            ImageKind::AsShot if self.left_out.is_empty() => match unturned(bytes, &photo) {
+                Some(bytes) => (photo.image, bytes),
+                None => self.new_file(photo)?,
+            },
             _ => {
                 drop(bytes);
                 self.new_file(photo)?
@@ -147,6 +150,25 @@ impl PictureSource<'_> {
         )?;
         Ok((image, bytes))
     }
+}
+
+/// A photo's file without EXIF's mark to turn it, else as it is; `None` where the mark is there and cannot be taken out in place:
+/// in a JPEG no checksum counts its EXIF.
+fn unturned(mut bytes: Vec<u8>, photo: &DecodedPhoto) -> Option<Vec<u8>> {
+    if picture::turned_in_exif(&bytes).is_none() {
+        return Some(bytes);
+    }
+    let is_jpeg = matches!(photo.format, PhotoFormat::Jpeg);
+    let exif = photo
+        .exif
+        .as_ref()
+        .filter(|exif| is_jpeg && !exif.is_empty())?;
+    let place = bytes
+        .windows(exif.len())
+        .position(|part| part == exif.as_slice())?;
+    let there = bytes.get_mut(place..place + exif.len())?;
+    Orientation::remove_from_exif_chunk(there)?;
+    Some(bytes)
 }
 
 /// That a program which follows a photo's EXIF shows another edge at the top than the sheet calls so.

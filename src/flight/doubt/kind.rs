@@ -4,7 +4,7 @@
 use super::Doubt;
 
 /// All words.
-const KINDS: [&str; 37] = [
+const KINDS: [&str; 38] = [
     "no-scale",
     "off-surface",
     "no-point",
@@ -18,6 +18,7 @@ const KINDS: [&str; 37] = [
     "off-line",
     "wide-interval",
     "noisy-points",
+    "wall",
     "unit-unknown",
     "unit-not-systems",
     "small-angles",
@@ -73,6 +74,7 @@ impl Doubt {
             Self::OffLine { .. } => "off-line",
             Self::WideInterval { .. } => "wide-interval",
             Self::NoisyPoints { .. } => "noisy-points",
+            Self::Wall { .. } => "wall",
             Self::UnitUnknown => "unit-unknown",
             Self::UnitNotSystems { .. } => "unit-not-systems",
             Self::SmallAngles { .. } => "small-angles",

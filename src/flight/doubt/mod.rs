@@ -89,6 +89,13 @@ pub enum Doubt {
         /// Of its height; `None` where nobody states it.
         unit: Option<LengthUnit>,
     },
+    /// A cloud's points stand on a wall, over which they are triangulated from above.
+    Wall {
+        /// How steep, degrees from level.
+        steepness: f64,
+        /// Degrees.
+        limit: f64,
+    },
     /// Nobody says what unit the world counts in.
     UnitUnknown,
     /// The world's coordinate system counts in another unit than is said of the world.
@@ -384,6 +391,9 @@ impl fmt::Display for Doubt {
                     "the scale of the photo's pixels is {percent} % (rms) off the best line, more than {limit} %"
                 )
             }
+            Self::WideInterval { percent, .. } if percent.is_infinite() => f.write_str(
+                "the 95 % interval of its scale has no upper end: nothing tells how large it is",
+            ),
             Self::WideInterval { percent, limit } => {
                 let (percent, limit) = apart(*percent, *limit, 1);
                 write!(
@@ -398,6 +408,14 @@ impl fmt::Display for Doubt {
                 in_words(*unit),
                 to_digits(noise.relative * 100.0, 2)
             ),
+            Self::Wall { steepness, limit } => {
+                let (steepness, limit) = apart(*steepness, *limit, 0);
+                write!(
+                    f,
+                    "what it shows stands at {steepness}° to the level, more than {limit}°: a cloud is triangulated from above, where points of a wall are not beside those that they \
+                     are beside on it; give the surface as a mesh"
+                )
+            }
             Self::UnitUnknown => f.write_str(
                 "not a scale: the model is in a frame of its own, whose unit nobody states; georeference it, or set its unit",
             ),

@@ -64,6 +64,7 @@ impl Doubt {
             | Self::NotPlane { .. }
             | Self::OffLine { .. }
             | Self::NoisyPoints { .. }
+            | Self::Wall { .. }
             | Self::RoundedPoints { .. } => (OnPhoto::Field, InView::Footprint),
             Self::Ratio { .. } | Self::WideInterval { .. } => {
                 (OnPhoto::TopBottom, InView::Footprint)

@@ -4,7 +4,7 @@
 //! - One point a line; empty lines and lines that begin with `#` or `//` are passed over, but the
 //!   first line, or the first behind such marks, may name the columns.
 //! - The separator is found on the first line of numbers: comma, semicolon, tab or spaces. With
-//!   semicolons the decimal sign may be a comma; between commas it may not, and what looks like it is refused.
+//!   semicolons and in quotes the decimal sign may be a comma; between commas alone it may not, and what looks like it is refused.
 //! - A height of -9999, -32767 or -32768 stands for none, as in GDAL's grids: such points are left out, which is said.
 //! - Without names the columns are x y z, and where six or more stand and the next three are whole
 //!   numbers from 0 to 255, red green blue. With names they are found by name: x, y, z (also
@@ -62,6 +62,8 @@ pub(crate) fn read(
         if text.is_empty() || (is_comment && (layout.is_some() || named.is_some())) {
             continue;
         }
+        let quoted = decimal_commas_in_quotes(text);
+        let text = quoted.as_deref().unwrap_or(text);
         let (separator, columns) = match layout {
             Some(known) => known,
             None => {
@@ -191,6 +193,29 @@ fn are_decimal_commas(line: &str, names: Option<usize>) -> bool {
         && behind
             .into_iter()
             .any(|part| part.len() > 1 && part.starts_with('0'))
+}
+
+/// A line between commas that has commas in quotes, too, as a spreadsheet writes decimal commas: with points in their
+/// place, and without the quotes. `None` of other lines.
+fn decimal_commas_in_quotes(line: &str) -> Option<String> {
+    let mut is_quoted = false;
+    let mut has_comma = false;
+    let plain = line.chars().filter_map(|sign| {
+        is_quoted ^= sign == '"';
+        match sign {
+            '"' => None,
+            ',' if is_quoted => {
+                has_comma = true;
+                Some('.')
+            }
+            _ => Some(sign),
+        }
+    });
+    if !line.contains('"') || line.contains(';') {
+        return None;
+    }
+    let plain: String = plain.collect();
+    has_comma.then_some(plain)
 }
 
 fn not_a_number(line: u64, word: &str) -> Fault {
@@ -509,6 +534,17 @@ mod tests {
             points("451902,5410899,90,12,0,255\n"),
             [DVec3::new(451_902.0, 5_410_899.0, 90.0)]
         );
+    }
+
+    /// As a spreadsheet of a country of decimal commas writes a comma-separated table.
+    #[test]
+    fn decimal_commas_in_quotes_are_decimal_signs() {
+        let text = "name,x,y,z\n\"a, b\",\"452259,1501\",\"5411829,5\",\"2800,0\"\nc,\"452260\",\"5411830,25\",2801\n";
+        let wanted = [
+            DVec3::new(452_259.1501, 5_411_829.5, 2800.0),
+            DVec3::new(452_260.0, 5_411_830.25, 2801.0),
+        ];
+        assert_eq!(points(text), wanted);
     }
 
     #[test]

@@ -43,8 +43,11 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// How wide it is, in percent of its middle.
+    /// How wide it is, in percent of its middle; infinite without an upper end.
     pub fn width_percent(self) -> f64 {
+        if self.high.is_infinite() {
+            return f64::INFINITY;
+        }
         (self.high - self.low) / ((self.high + self.low) / 2.0).abs() * 100.0
     }
 
@@ -110,6 +113,9 @@ pub struct Uncertainty {
     pub corner_parts_percent: [Option<f64>; 4],
     /// How far points of one place lie apart; of a surface that came with its faces nothing is known of it.
     pub noise: PointNoise,
+    /// How steep the plane stands that lies best through what the photo shows of a cloud, degrees from level; 0 of a surface that
+    /// came with its faces.
+    pub steepness: f64,
 }
 
 /// What the uncertainty of a photo follows from.
@@ -170,6 +176,10 @@ impl Uncertainty {
             line_parts_percent,
             corner_parts_percent,
             noise: errors.noise,
+            steepness: match surface.is_cloud() {
+                true => steepness(photo.field, plane),
+                false => 0.0,
+            },
         })
     }
 
@@ -204,6 +214,12 @@ impl Uncertainty {
             .filter(|(_, part)| part.is_none())
             .map(|(source, _)| source)
     }
+}
+
+/// How steep a photo's plane stands, degrees from level.
+fn steepness(field: &ScaleField, plane: glam::DVec3) -> f64 {
+    let normal = (field.pose().rotation * plane).normalize_or_zero();
+    normal.z.abs().min(1.0).acos().to_degrees()
 }
 
 #[cfg(test)]
