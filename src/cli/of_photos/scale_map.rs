@@ -114,6 +114,16 @@ pub(in crate::cli) fn scale_map(
             MapFormat::of(path)?;
             outputs = outputs.and(path, Kind::Result)?;
         }
+        let mut files = arguments.output.iter();
+        if files.all(|path| MapFormat::of(path) == Ok(MapFormat::Colours))
+            && arguments.layers.iter().any(|layer| *layer != Layer::Scale)
+        {
+            let fault = Fault::new(
+                "a PNG shows the scale alone, and no other layer",
+                "write a TIFF (-o FILE.tif), or leave --layers out",
+            );
+            return Err(FileError::new(&arguments.output[0], fault).to_string());
+        }
     }
     let (flight, memory) = (&arguments.flight, &arguments.memory);
     // Of a cloud that is read in part, the work may begin anew: what is written holds.
@@ -245,6 +255,12 @@ fn plan<'a>(
         );
         return Err(FileError::new(&arguments.output[0], fault).to_string());
     };
+    // Who names a file means one.
+    if MapFormat::of(folder).is_ok() && !folder.is_dir() {
+        let what = "maps of several photos go into a folder, and this names a file";
+        let remedy = "give the folder, or one --photo";
+        return Err(FileError::new(folder, Fault::new(what, remedy)).to_string());
+    }
     let stems = exports::photo_file_stems(flight);
     let both = |index: usize| Planned {
         photo: &photos[index],

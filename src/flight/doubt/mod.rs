@@ -391,9 +391,6 @@ impl fmt::Display for Doubt {
                     "the scale of the photo's pixels is {percent} % (rms) off the best line, more than {limit} %"
                 )
             }
-            Self::WideInterval { percent, .. } if percent.is_infinite() => f.write_str(
-                "the 95 % interval of its scale has no upper end: nothing tells how large it is",
-            ),
             Self::WideInterval { percent, limit } => {
                 let (percent, limit) = apart(*percent, *limit, 1);
                 write!(

@@ -314,16 +314,6 @@ fn the_field_is_judged_for_the_pair_in_use() {
     let ratio = [Doubt::Ratio { ratio: 14.5, limit }];
     assert_eq!(doubts(&steep, ScalePair::Fitted), ratio);
     assert_eq!(doubts(&steep, ScalePair::Corners), []);
-    // Without an upper end nothing is known of it.
-    let mut endless = field(1.0, 1.0, 1.0);
-    if let Some(uncertainty) = &mut endless.uncertainty {
-        uncertainty.fitted_top = uncertainty.fitted_top.map(|interval| Interval {
-            high: f64::INFINITY,
-            ..interval
-        });
-    }
-    let said = doubts(&endless, ScalePair::Fitted);
-    assert!(said[0].to_string().contains("has no upper end"), "{said:?}");
     // A wall's points are not beside each other from above.
     let mut wall = field(1.0, 1.0, 1.0);
     for (steepness, count) in [(74.9, 0), (75.1, 1)] {

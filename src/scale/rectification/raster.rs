@@ -55,7 +55,7 @@ impl PlaneRaster {
                     size.y,
                     MOST_PIXELS / 1_000_000
                 ),
-                "give a larger --pixel",
+                "give larger pixels (rectify --pixel), or a photo that does not look at the horizon",
             ));
         }
         Ok(Self {

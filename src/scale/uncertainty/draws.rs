@@ -99,10 +99,15 @@ fn normal_interval(mean: f64, deviation: f64, estimate: f64) -> Interval {
         };
     };
     let (low, high) = ends(normal.cdf(estimate));
+    // Where all of the distribution lies on one side of the estimate, to rounding, its end there is none.
+    let at = |share: f64| {
+        let end = normal.inverse_cdf(share);
+        if end.is_finite() { end } else { estimate }
+    };
     Interval {
         standard_error: deviation,
-        low: normal.inverse_cdf(low).min(estimate),
-        high: normal.inverse_cdf(high).max(estimate),
+        low: at(low).min(estimate),
+        high: at(high).max(estimate),
     }
 }
 
@@ -164,6 +169,13 @@ mod tests {
         let far = normal_interval(0.0, 1.0, 6.0);
         assert_eq!(far.high, 6.0);
         assert!((far.low + 1.644_854).abs() < 1e-4, "{far:?}");
+        // Beyond what rounding tells from certainty.
+        for estimate in [40.0, -40.0] {
+            let far = normal_interval(0.0, 1.0, estimate);
+            let other = if estimate > 0.0 { far.low } else { far.high };
+            assert!((other.abs() - 1.644_854).abs() < 1e-4, "{far:?}");
+            assert!(far.low == estimate || far.high == estimate, "{far:?}");
+        }
         let drawn: Vec<f64> = (0..1000).map(f64::from).collect();
         let interval = interval_of(drawn.clone(), -5.0);
         assert_eq!(interval.low, -5.0);

@@ -43,11 +43,8 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// How wide it is, in percent of its middle; infinite without an upper end.
+    /// How wide it is, in percent of its middle.
     pub fn width_percent(self) -> f64 {
-        if self.high.is_infinite() {
-            return f64::INFINITY;
-        }
         (self.high - self.low) / ((self.high + self.low) / 2.0).abs() * 100.0
     }
 
