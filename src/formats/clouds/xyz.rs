@@ -541,7 +541,7 @@ mod tests {
     fn decimal_commas_in_quotes_are_decimal_signs() {
         let text = "name,x,y,z\n\"a, b\",\"452259,1501\",\"5411829,5\",\"2800,0\"\nc,\"452260\",\"5411830,25\",2801\n";
         let wanted = [
-            DVec3::new(452_259.1501, 5_411_829.5, 2800.0),
+            DVec3::new(452_259.150_1, 5_411_829.5, 2800.0),
             DVec3::new(452_260.0, 5_411_830.25, 2801.0),
         ];
         assert_eq!(points(text), wanted);
