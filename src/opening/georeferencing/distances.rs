@@ -12,7 +12,7 @@ use crate::control::{Located, ScaleBar};
 use crate::fault::Fault;
 use crate::formats::Reconstruction;
 use crate::geometry::Similarity;
-use crate::georeference::{KnownLength, levelled, scale_of_lengths};
+use crate::georeference::{KnownLength, LengthsFit, levelled, scale_of_lengths};
 use crate::scale::StatedErrors;
 use crate::units::LengthUnit;
 
@@ -24,9 +24,7 @@ pub(super) fn by_distances(
     marked: &[MarkedPoint],
     mut warnings: Vec<String>,
 ) -> Result<Georeferenced, Fault> {
-    let lengths = known_lengths(distances, marked)?;
-    let numbers: Vec<KnownLength> = lengths.iter().map(|(_, length)| *length).collect();
-    let found = scale_of_lengths(&numbers)?;
+    let (lengths, found) = fit_lengths(distances, marked)?;
     let unit = match (&reconstruction.crs, reconstruction.unit) {
         (Some(_), Some(unit)) => unit,
         _ => LengthUnit::Metre,
@@ -109,9 +107,7 @@ pub(super) fn lengthen(
     distances: &[KnownDistance],
     marked: &[MarkedPoint],
 ) -> Result<(), Fault> {
-    let lengths = known_lengths(distances, marked)?;
-    let numbers: Vec<KnownLength> = lengths.iter().map(|(_, length)| *length).collect();
-    let found = scale_of_lengths(&numbers)?;
+    let (lengths, found) = fit_lengths(distances, marked)?;
     let by_positions = (result.similarity, result.scale_interval);
     let scale = found.scale / result.unit.metres();
     let ratio = scale / by_positions.0.scale;
@@ -183,6 +179,17 @@ fn fitted(lengths: Vec<(String, KnownLength)>, metres: f64) -> Vec<LengthResidua
         fitted: length.found * metres,
     });
     lengths.collect()
+}
+
+/// Known distances with what they are in the reconstruction and what they are called, and the scale that they give.
+fn fit_lengths(
+    distances: &[KnownDistance],
+    marked: &[MarkedPoint],
+) -> Result<(Vec<(String, KnownLength)>, LengthsFit), Fault> {
+    let lengths = known_lengths(distances, marked)?;
+    let numbers: Vec<KnownLength> = lengths.iter().map(|(_, length)| *length).collect();
+    let found = scale_of_lengths(&numbers)?;
+    Ok((lengths, found))
 }
 
 /// Known distances with what they are in the reconstruction, and what they are called.

@@ -526,6 +526,42 @@ fn a_distance_gives_the_length_and_positions_the_place() {
     assert!(said.contains("positions do not place it: "), "{said}");
 }
 
+/// What stands in a system of feet stays there, about the middle of its cameras, and in feet: 10 of them are 3.048 m, and were
+/// measured as 3.1.
+#[test]
+fn a_distance_lengthens_what_has_a_place() {
+    let model = Reconstruction {
+        crs: Some("EPSG:2277".to_owned()),
+        unit: Some(LengthUnit::Foot),
+        ..reconstruction()
+    };
+    let request = GeoreferenceRequest {
+        distances: vec!["0,0,0 0,0,10 3.1".parse().unwrap()],
+        crs: model.crs.clone(),
+        ..GeoreferenceRequest::default()
+    };
+    let found = georeference_model(Path::new("model"), &model, &request).unwrap();
+    assert!((found.similarity.scale - 3.1 / 3.048).abs() < 1e-12);
+    assert_eq!(found.similarity.rotation, DMat3::IDENTITY);
+    assert_eq!(
+        (found.crs.as_deref(), found.unit),
+        (Some("EPSG:2277"), LengthUnit::Foot)
+    );
+    let centers = || model.photos.iter().map(|photo| photo.pose.center);
+    let middle = centers().sum::<DVec3>() / 12.0;
+    let moved = centers()
+        .map(|center| found.similarity.apply(center))
+        .sum::<DVec3>()
+        / 12.0;
+    assert!(moved.distance(middle) < 1e-9, "{moved}");
+    assert!((found.lengths[0].fitted - 3.1).abs() < 1e-12);
+    let said = found.warnings.join("; ");
+    assert!(
+        said.contains("1.7 % longer; it stays where it is"),
+        "{said}"
+    );
+}
+
 #[test]
 fn what_is_refused() {
     let sentence = |text: &str, crs: Option<&str>| {
