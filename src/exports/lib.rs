@@ -56,8 +56,8 @@ pub use masks::{
 };
 pub use measured::{
     MeasuredUnit, PointsReport, ProfileReport, VolumeReport, is_of_a_stone, percent, points_csv,
-    points_table, profile_csv, profile_json, profile_table, volume_csv, volume_json, volume_table,
-    volume_warnings,
+    points_table, profile_csv, profile_json, profile_table, profile_warnings, volume_csv,
+    volume_json, volume_table, volume_warnings,
 };
 pub use missions::{MissionFiles, MissionFormat, WrittenMission, mission_files, write_missions};
 pub use photo_columns::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn};

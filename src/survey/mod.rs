@@ -27,7 +27,7 @@ pub use base::{Base, BaseFound, Plane};
 pub use face::Face;
 pub use polygon::{MOST_CORNERS, Polygon};
 pub use profile::{Profile, ProfilePoint};
-pub use volume::{BRIDGE, Volume, volume};
+pub use volume::{BRIDGE, LEAST_BRIDGED, Volume, volume};
 
 use crate::surface::SurfaceError;
 

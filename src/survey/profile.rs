@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::SurveyError;
 use super::envelope::{Piece, upper_envelope};
+use super::volume::BRIDGE;
 use crate::geometry::Bounds;
 use crate::surface::Surface;
 
@@ -24,6 +25,9 @@ pub struct Profile {
     pub runs: Vec<Vec<ProfilePoint>>,
     /// How long the line is in plan, world units.
     pub length: f64,
+    /// The part of the line, 0 to 1, on triangles of a cloud that it is on for more than [`BRIDGE`] times the median way: no points
+    /// lie there. 0 of a mesh.
+    pub bridged: f64,
 }
 
 impl Profile {
@@ -41,6 +45,7 @@ impl Profile {
         let mut profile = Self {
             runs: Vec::new(),
             length: 0.0,
+            bridged: 0.0,
         };
         for ends in line.windows(2) {
             let &[from, to] = ends else {
@@ -73,6 +78,9 @@ impl Profile {
             profile.length += length;
         }
         if profile.length > 0.0 {
+            if surface.is_cloud() {
+                profile.bridged = profile.long_ways() / profile.length;
+            }
             Ok(profile)
         } else {
             Err(SurveyError::NoLength)
@@ -93,6 +101,19 @@ impl Profile {
             }
             _ => self.runs.push(vec![from, to]),
         }
+    }
+
+    /// The sum of its ways over single triangles that are longer than [`BRIDGE`] times the median one.
+    fn long_ways(&self) -> f64 {
+        let pairs = self.runs.iter().flat_map(|run| run.windows(2));
+        let ways = pairs.map(|pair| pair[1].distance - pair[0].distance);
+        let mut ways: Vec<f64> = ways.filter(|way| *way > 0.0).collect();
+        let place = ways.len() / 2;
+        if place >= ways.len() {
+            return 0.0;
+        }
+        let median = *ways.select_nth_unstable_by(place, f64::total_cmp).1;
+        ways.iter().filter(|way| **way > BRIDGE * median).sum()
     }
 
     /// All its points.

@@ -66,6 +66,9 @@ fn part_of_plan(part: f64) -> f64 {
     }
 }
 
+/// A smaller part of what is measured that triangles bridge is not worth a word.
+pub const LEAST_BRIDGED: f64 = 0.005;
+
 /// What was found of some triangles.
 #[derive(Debug, Clone, Default)]
 struct Found {

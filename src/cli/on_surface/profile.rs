@@ -70,6 +70,7 @@ pub(in crate::cli) fn profile(
         exports::profile_csv,
         exports::profile_json,
     )?;
+    warnings.extend(exports::profile_warnings(&profile));
     warnings.extend(opened.all_warnings());
     Ok(Answer::new(text, warnings))
 }

@@ -6,11 +6,14 @@ mod profile;
 mod volume;
 
 pub use points::{PointsReport, points_csv, points_table};
-pub use profile::{ProfileReport, is_of_a_stone, profile_csv, profile_json, profile_table};
+pub use profile::{
+    ProfileReport, is_of_a_stone, profile_csv, profile_json, profile_table, profile_warnings,
+};
 pub use volume::{VolumeReport, volume_csv, volume_json, volume_table, volume_warnings};
 
 use crate::flight::FlightParts;
 use crate::numbers::significant_digits;
+use crate::survey::{BRIDGE, LEAST_BRIDGED};
 
 /// What is written beside lengths, areas and volumes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,6 +70,17 @@ fn level(number: f64) -> String {
         kept = kept.strip_suffix('0').unwrap_or(kept);
     }
     kept.to_owned()
+}
+
+/// That a cloud has no points in a part of what is measured, and triangles bridge it; `None` of little.
+fn bridged(measured: &str, share: f64) -> Option<String> {
+    (share > LEAST_BRIDGED).then(|| {
+        format!(
+            "in {} of {measured} the cloud has no points, and triangles more than {BRIDGE:.0} times as long as most of them bridge it: \
+             what is there was not measured (a longest edge, max_edge of [surface], makes holes of them)",
+            percent(share)
+        )
+    })
 }
 
 /// A share in percent. What is not all of it is not called 100 %.

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{MeasuredUnit, coordinate, csv_of, percent, rows_of_text};
+use super::{MeasuredUnit, bridged, coordinate, csv_of, percent, rows_of_text};
 use crate::survey::{Face, Profile, ProfilePoint};
 
 /// A profile and what it is of.
@@ -18,6 +18,11 @@ pub struct ProfileReport<'a> {
 
 /// What the sides of the crest are called.
 const SIDES: [&str; 2] = ["before", "after"];
+
+/// What an engineer should know of a profile, a sentence each.
+pub fn profile_warnings(profile: &Profile) -> Vec<String> {
+    bridged("the line", profile.bridged).into_iter().collect()
+}
 
 /// Crest, toes and angles of repose as text.
 pub fn profile_table(report: &ProfileReport<'_>) -> String {

@@ -2,12 +2,9 @@
 
 use serde_json::json;
 
-use super::{MeasuredUnit, coordinate, csv_of, level, percent, rows_of_text};
+use super::{MeasuredUnit, bridged, coordinate, csv_of, level, percent, rows_of_text};
 use crate::numbers::significant_digits;
-use crate::survey::{BRIDGE, BaseFound, Volume};
-
-/// A smaller part of the polygon that triangles bridge is not worth a word.
-const LEAST_BRIDGED: f64 = 0.005;
+use crate::survey::{BaseFound, Volume};
 
 /// What lies inside a polygon, and of what.
 #[derive(Debug, Clone, Copy)]
@@ -104,13 +101,7 @@ pub fn volume_warnings(volume: &Volume) -> Vec<String> {
             100.0 * volume.doubtful
         )
     });
-    let bridged = (volume.bridged > LEAST_BRIDGED).then(|| {
-        format!(
-            "in {} of the polygon the cloud has no points, and triangles more than {BRIDGE:.0} times as long as most of them bridge it: \
-             what is there was not measured (a longest edge, max_edge of [surface], makes holes of them)",
-            percent(volume.bridged)
-        )
-    });
+    let bridged = bridged("the polygon", volume.bridged);
     [hole, bridged, bodies, doubtful]
         .into_iter()
         .flatten()

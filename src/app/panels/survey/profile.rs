@@ -7,6 +7,7 @@ use crate::command::{Command, MeasuredTable};
 use crate::exports::{ProfileReport, is_of_a_stone, profile_csv, profile_table};
 use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::Drawn;
+use crate::survey::LEAST_BRIDGED;
 
 /// Points of the plot at most: more than any screen has columns.
 const MOST_POINTS: usize = 4000;
@@ -82,6 +83,12 @@ pub(super) fn profile(
         rows.push((
             "Holes",
             format!("{:.1} %", 100.0 * (1.0 - profile.covered())),
+        ));
+    }
+    if profile.bridged > LEAST_BRIDGED {
+        rows.push((
+            "Without points, bridged",
+            format!("{:.1} %", 100.0 * profile.bridged),
         ));
     }
     numbers("profile numbers", &rows, ui);

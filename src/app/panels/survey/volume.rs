@@ -7,7 +7,7 @@ use crate::names;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::{BaseChoice, Drawn, SurveyStep};
-use crate::survey::BaseFound;
+use crate::survey::{BaseFound, LEAST_BRIDGED};
 
 pub(super) fn volume(
     open: &OpenFlight,
@@ -88,6 +88,10 @@ pub(super) fn volume(
     if holes > 1e-9 {
         let holes = significant_digits(100.0 * holes, 3);
         rows.push(("Not covered, not counted", format!("{holes} %")));
+    }
+    if volume.bridged > LEAST_BRIDGED {
+        let bridged = format!("{:.1} %", 100.0 * volume.bridged);
+        rows.push(("Without points, bridged", bridged));
     }
     if volume.bodies > 0.0 {
         let bodies = format!("{:.0} % of the plan", 100.0 * volume.bodies);
