@@ -187,6 +187,10 @@ fn a_bridged_hole_is_told() {
     let surface = cloud(points);
     let over = Profile::along(&surface, &[at(0.0, 1.3), at(44.0, 1.3)]).unwrap();
     near(over.bridged, 36.0 / 44.0, 1e-9);
+    // All its long triangles are of one length.
+    let polygon = rectangle([0.0, 0.0], [44.0, 4.0]);
+    let found = volume(&surface, &polygon, Base::Height(ORIGIN.z)).unwrap();
+    near(found.bridged, 36.0 / 44.0, 1e-9);
     let beside = Profile::along(&surface, &[at(0.0, 1.3), at(4.0, 1.3)]).unwrap();
     assert_eq!(beside.bridged, 0.0);
 }

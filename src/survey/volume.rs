@@ -12,7 +12,7 @@ use super::overlay::{Overlay, around};
 use super::polygon::Polygon;
 use super::prism::{Corner, Sums, clip_to};
 use crate::geometry::Bounds;
-use crate::surface::{Patch, Surface};
+use crate::surface::{Patch, Surface, longest_edge};
 
 /// What lies inside a polygon. Lengths in world units, areas in their squares, volumes in their cubes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,9 +86,8 @@ struct Edges(BTreeMap<i32, (u64, f64)>);
 
 impl Edges {
     /// Adds a triangle of which this area counts.
-    fn add(&mut self, corners: [DVec2; 3], area: f64) {
-        let [a, b, c] = corners;
-        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    fn add(&mut self, corners: [DVec3; 3], area: f64) {
+        let longest = longest_edge(corners.map(|at| at.with_z(0.0)));
         // `as` saturates: a triangle without length is among the shortest.
         let step = (longest.log2() * 8.0).floor() as i32;
         let (count, sum) = self.0.entry(step).or_default();
@@ -115,8 +114,8 @@ impl Edges {
         let Some((median, _)) = median else {
             return 0.0;
         };
-        let longest = median.saturating_add((BRIDGE.log2() * 8.0) as i32);
-        let longer = self.0.range(longest..).skip(1);
+        let limit = median.saturating_add((BRIDGE.log2() * 8.0) as i32);
+        let longer = self.0.range(limit.saturating_add(1)..);
         longer.map(|(_, (_, area))| area).sum()
     }
 }
@@ -199,7 +198,7 @@ pub fn volume(surface: &Surface, polygon: &Polygon, base: Base<'_>) -> Result<Vo
                 found.surface.add(&piece);
                 if is_cloud {
                     let area = found.surface.plan - before;
-                    found.edges.add(corners.map(DVec3::truncate), area);
+                    found.edges.add(corners, area);
                 }
                 if let Some(overlay) = &overlay {
                     overlay.add(&piece, &mut found.both);
