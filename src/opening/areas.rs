@@ -28,12 +28,6 @@ pub fn places(text: &str) -> Result<(Vec<DVec2>, Vec<String>), String> {
     }
 }
 
-/// The file that places or outlines are read from, if it is one.
-pub fn file_of_places(text: &str) -> Option<PathBuf> {
-    let path = Path::new(text);
-    path.is_file().then(|| path.to_owned())
-}
-
 /// Outlines as somebody gave them.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Areas {

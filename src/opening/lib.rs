@@ -46,7 +46,7 @@ use fragscale_delineation as delineation;
 use fragscale_formats as formats;
 use fragscale_fragmentation as fragmentation;
 
-pub use areas::{Areas, file_of_places, places};
+pub use areas::{Areas, places};
 pub use dropped::Dropped;
 pub use evidence::{Colours, compare_all_colours, compare_colours, look_up};
 pub use flown::{ComparedFlight, FlightOfMission, compare_flown};

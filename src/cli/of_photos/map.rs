@@ -17,7 +17,7 @@ use crate::files::Kind;
 use crate::formats::FileError;
 use crate::formats::photos::photo_metadata;
 use crate::jobs::Progress;
-use crate::opening::{Areas, file_of_places, places};
+use crate::opening::{Areas, places};
 use crate::survey::SurveyError;
 
 #[derive(Debug, Args)]
@@ -77,8 +77,9 @@ pub(in crate::cli) fn map(arguments: &MapArguments, progress: &Progress) -> Resu
     let (mut measured, mut warnings) = lines(arguments)?;
     let polygons = arguments.polygon.iter().map(|text| Areas::read(text));
     let polygons: Vec<Areas> = polygons.collect::<Result<_, String>>()?;
+    // Of what is typed there is no file.
     let drawn = arguments.line.iter().chain(&arguments.polygon);
-    let drawn: Vec<PathBuf> = drawn.filter_map(|text| file_of_places(text)).collect();
+    let drawn: Vec<PathBuf> = drawn.map(PathBuf::from).collect();
     let outputs = Outputs::new(arguments.force, arguments.flight.files().chain(&drawn));
     let mut outputs = outputs.and(output, Kind::Result)?;
     let opened = arguments.flight.open(progress)?;

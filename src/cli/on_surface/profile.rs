@@ -1,5 +1,7 @@
 //! `fragscale profile`: the surface over a line.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use glam::DVec2;
 
@@ -11,7 +13,7 @@ use crate::exports::{self, MeasuredUnit, ProfileReport};
 use crate::fault::Fault;
 use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::opening::{file_of_places, places};
+use crate::opening::places;
 use crate::survey::Profile;
 
 #[derive(Debug, Args)]
@@ -35,7 +37,8 @@ pub(in crate::cli) fn profile(
     arguments: &ProfileArguments,
     progress: &Progress,
 ) -> Result<Answer, String> {
-    let line_file = arguments.line.as_deref().and_then(file_of_places);
+    // Of a line that is typed there is no file.
+    let line_file = arguments.line.as_ref().map(PathBuf::from);
     let mut outputs = arguments
         .answer
         .outputs(arguments.flight.files().chain(&line_file))?;

@@ -12,7 +12,7 @@ use crate::exports::{self, MeasuredUnit, VolumeReport};
 use crate::fault::Fault;
 use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::opening::{Areas, StatedWorld, file_of_places, second_surface};
+use crate::opening::{Areas, StatedWorld, second_surface};
 use crate::survey::{self, Base};
 
 #[derive(Debug, Args)]
@@ -66,12 +66,10 @@ pub(in crate::cli) fn volume(
             "give an elevation as a number with a point, such as 2800.5, in the world's unit";
         return Err(FileError::new(base, Fault::new(what, remedy)).to_string());
     }
-    let polygon_file = file_of_places(&arguments.polygon);
-    let inputs = arguments
-        .flight
-        .files()
-        .chain(base_file)
-        .chain(&polygon_file);
+    // Of a polygon that is typed there is no file.
+    let polygon_file = PathBuf::from(&arguments.polygon);
+    let inputs = arguments.flight.files().chain(base_file);
+    let inputs = inputs.chain([&polygon_file]);
     let mut outputs = arguments.answer.outputs(inputs)?;
     let polygon = Areas::read(&arguments.polygon)?;
     let opened = arguments.flight.open_to_measure(progress)?;

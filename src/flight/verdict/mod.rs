@@ -255,20 +255,15 @@ fn doubts_of_field(
     if let Some(percent) = widest.filter(|&percent| percent > limit) {
         doubts.push(Doubt::WideInterval { percent, limit });
     }
-    let noise = field
-        .uncertainty
-        .as_ref()
-        .map(|uncertainty| uncertainty.noise);
-    if let Some(noise) = noise.filter(|noise| noise.is_doubtful()) {
-        doubts.push(Doubt::NoisyPoints { noise, unit });
-    }
-    let steepness = field
-        .uncertainty
-        .as_ref()
-        .map(|uncertainty| uncertainty.steepness);
-    if let Some(steepness) = steepness.filter(|steepness| *steepness > STEEPEST) {
-        let limit = STEEPEST;
-        doubts.push(Doubt::Wall { steepness, limit });
+    if let Some(uncertainty) = &field.uncertainty {
+        let (noise, steepness) = (uncertainty.noise, uncertainty.steepness);
+        if noise.is_doubtful() {
+            doubts.push(Doubt::NoisyPoints { noise, unit });
+        }
+        if steepness > STEEPEST {
+            let limit = STEEPEST;
+            doubts.push(Doubt::Wall { steepness, limit });
+        }
     }
     doubts
 }

@@ -1,0 +1,206 @@
+//! The length by known distances: alone, with positions that give the place, and of what has one.
+
+use super::*;
+
+/// A plane of points with some high above it, in a frame that stands on its head.
+#[test]
+fn a_distance_and_level() {
+    let mut reconstruction = reconstruction();
+    let back = truth().rotation.transpose();
+    for i in 0..400 {
+        let high = if i % 20 == 0 {
+            9.0
+        } else {
+            0.02 * f64::from(i % 3)
+        };
+        let world = DVec3::new(f64::from(i % 20), f64::from(i / 20), high - 6.0);
+        reconstruction.cloud.points.push(back * world);
+    }
+    let request = GeoreferenceRequest {
+        distances: vec![
+            "0,0,0 0,0,2 15".parse().unwrap(),
+            "0,0,0 0,4,0 30.3".parse().unwrap(),
+        ],
+        level: true,
+        ..GeoreferenceRequest::default()
+    };
+    let found = georeference_model(Path::new("model"), &reconstruction, &request).unwrap();
+    // By hand: (2 * 15 + 4 * 30.3) / (4 + 16).
+    assert!((found.similarity.scale - 7.56).abs() < 1e-12);
+    assert!(found.scale_error.unwrap() > 0.0);
+    let up = found.similarity.rotation * (back * DVec3::Z);
+    assert!(up.distance(DVec3::Z) < 0.01, "{up}");
+    assert_eq!(found.crs, None);
+    for text in [
+        "1,2,3 4,5,6",
+        "1,2,3 a 5",
+        "1,2,3 4,5,6 0",
+        "1,2,3 4,5,6 x",
+        "a b -1",
+    ] {
+        assert!(text.parse::<KnownDistance>().is_err(), "{text}");
+    }
+}
+
+/// Twelve receivers half a metre too far north and south in turn, on a flight that is 0.4 % larger than it was: they place it, and
+/// a distance gives its length, about the middle of theirs.
+#[test]
+fn a_distance_gives_the_length_and_positions_the_place() {
+    let middle = centers().iter().sum::<DVec3>() / 12.0;
+    let list = |off: f64| {
+        let mut list = "EPSG:32632\n".to_owned();
+        for (i, center) in centers().into_iter().enumerate() {
+            let north = if i % 2 == 0 { off } else { -off };
+            let at = middle + (center - middle) * (1.0 + off / 125.0) + DVec3::Y * north;
+            writeln!(list, "IMG_{i:04}.JPG {} {} {}", at.x, at.y, at.z).unwrap();
+        }
+        List::new(&list)
+    };
+    let receivers = list(0.5);
+    let one = || vec!["0,0,0 0,0,1 7.5".parse().unwrap()];
+    let request = GeoreferenceRequest {
+        positions: Some(receivers.path()),
+        distances: one(),
+        ..GeoreferenceRequest::default()
+    };
+    let found = run(&request).unwrap();
+    assert!((found.similarity.scale - 7.5).abs() < 1e-12);
+    assert_eq!(
+        (found.crs.as_deref(), found.used()),
+        (Some("EPSG:32632"), 12)
+    );
+    let off: DVec3 = found
+        .positions
+        .iter()
+        .map(|position| position.residual)
+        .sum();
+    assert!(off.length() < 1e-6, "{off}");
+    let at = found.similarity.apply(photo(5, centers()[5]).pose.center);
+    assert!(at.distance(centers()[5]) < 0.5, "{at}");
+    assert!((0.4..0.55).contains(&found.rms.unwrap()), "{found:?}");
+    let said = found.warnings.join("; ");
+    assert!(said.contains("shorter than the positions (± "), "{said}");
+    assert!(
+        said.contains("which place it") && !said.contains("contradict"),
+        "{said}"
+    );
+    assert_eq!(found.scale_error, None);
+    // One in feet is none in metres.
+    let feet = GeoreferenceRequest {
+        distances: vec!["0,0,0 0,0,1 24.606".parse().unwrap()],
+        ..request.clone()
+    };
+    assert!(
+        run(&feet)
+            .unwrap()
+            .warnings
+            .join("; ")
+            .contains("they contradict each other")
+    );
+
+    // Good receivers know the length better than distances that do not agree.
+    let exact = list(0.0);
+    let request = GeoreferenceRequest {
+        positions: Some(exact.path()),
+        distances: vec![
+            "0,0,0 0,0,1 7.5".parse().unwrap(),
+            "0,0,0 0,1,0 7.7".parse().unwrap(),
+        ],
+        ..request
+    };
+    let found = run(&request).unwrap();
+    assert_is_truth(&found.similarity, 1e-6);
+    assert!(
+        found.warnings.join("; ").contains("which are surer"),
+        "{found:?}"
+    );
+    assert!((found.lengths[1].fitted - 7.5).abs() < 1e-4, "{found:?}");
+
+    // What the package kept places it as well, unless it is to be level; on a line it does not, which is said.
+    let utm = Crs::understand("EPSG:32632").unwrap();
+    let mut model = reconstruction();
+    let kept = |at: &dyn Fn(DVec3) -> DVec3| -> Vec<MeasuredPosition> {
+        let photos = reconstruction().photos.into_iter().zip(centers());
+        photos
+            .map(|(photo, center)| MeasuredPosition {
+                photo: photo.name,
+                position: utm.to_geographic(at(center)).unwrap(),
+            })
+            .collect()
+    };
+    model.measured_positions = kept(&|center| center);
+    let request = GeoreferenceRequest {
+        distances: one(),
+        ..GeoreferenceRequest::default()
+    };
+    let placed = georeference_model(Path::new("model"), &model, &request).unwrap();
+    assert_is_truth(&placed.similarity, 1e-6);
+    assert_eq!(placed.crs.as_deref(), Some("EPSG:32632"));
+    model.measured_positions = kept(&|center| center.with_x(435_200.0).with_z(460.0));
+    let alone = georeference_model(Path::new("model"), &model, &request).unwrap();
+    assert_eq!((alone.crs, alone.similarity.scale), (None, 7.5));
+    let said = alone.warnings.join("; ");
+    assert!(said.contains("positions do not place it: "), "{said}");
+}
+
+/// What stands in a system of feet stays there, about the middle of its cameras, and in feet: 10 of them are 3.048 m, and were
+/// measured as 3.1.
+#[test]
+fn a_distance_lengthens_what_has_a_place() {
+    let model = Reconstruction {
+        crs: Some("EPSG:2277".to_owned()),
+        unit: Some(LengthUnit::Foot),
+        ..reconstruction()
+    };
+    let request = GeoreferenceRequest {
+        distances: vec!["0,0,0 0,0,10 3.1".parse().unwrap()],
+        crs: model.crs.clone(),
+        ..GeoreferenceRequest::default()
+    };
+    let found = georeference_model(Path::new("model"), &model, &request).unwrap();
+    assert!((found.similarity.scale - 3.1 / 3.048).abs() < 1e-12);
+    assert_eq!(found.similarity.rotation, DMat3::IDENTITY);
+    assert_eq!(
+        (found.crs.as_deref(), found.unit),
+        (Some("EPSG:2277"), LengthUnit::Foot)
+    );
+    let centers = || model.photos.iter().map(|photo| photo.pose.center);
+    let middle = centers().sum::<DVec3>() / 12.0;
+    let moved = centers()
+        .map(|center| found.similarity.apply(center))
+        .sum::<DVec3>()
+        / 12.0;
+    assert!(moved.distance(middle) < 1e-9, "{moved}");
+    assert!((found.lengths[0].fitted - 3.1).abs() < 1e-12);
+    let said = found.warnings.join("; ");
+    assert!(
+        said.contains("1.7 % longer; it stays where it is"),
+        "{said}"
+    );
+}
+
+/// Lengths of 1 that are 2 and 2.02 m: the scale is 2.01, and 0.01 m its standard deviation from two
+/// numbers and its standard error from two lengths of 1: sqrt(2 · 0.01² / 1 / 2) / 2.01 = 0.4975 %. With one degree of
+/// freedom half its 95 % interval is 12.7062 of them (Student's table), which a normal deviation of 12.7062 / 1.95996 has.
+/// One length says nothing of it.
+#[test]
+fn the_flight_says_how_sure_the_scale_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = folder.path().join("model.nvm");
+    fs::write(&model, "NVM_V3\n").unwrap();
+    let stated = |distances: &[&str]| {
+        let distances = distances.iter().map(|text| text.parse().unwrap());
+        let request = GeoreferenceRequest {
+            distances: distances.collect(),
+            ..GeoreferenceRequest::default()
+        };
+        let target = folder.path().join("flight.toml");
+        let text = run(&request)
+            .unwrap()
+            .flight_text(&target, &model, None, None);
+        FlightFile::parse(&text.unwrap()).unwrap().errors()
+    };
+    let both = stated(&["0,0,0 1,0,0 2", "0,0,0 0,1,0 2.02"]);
+    assert_eq!(both.world_scale, Some(3.225));
+    assert_eq!(stated(&["0,0,0 1,0,0 2"]), Default::default());
+}
