@@ -65,7 +65,7 @@ pub struct Georeferenced {
     pub scale_interval: Option<f64>,
     /// The standard error, in degrees, of the rotation about the long axis of the positions.
     pub rotation_error_degrees: Option<f64>,
-    /// How sure poses and focal length are, where the model's package does not say it and [`georeference`] or
+    /// How sure poses and focal length are, where the model's package does not say it and [`georeference`](super::georeference) or
     /// [`look_up_errors`](Georeferenced::look_up_errors) can: of photos to the pile, whatever place both have in the world, whose scale is not in it.
     pub errors: StatedErrors,
     /// What was assumed or left out, one sentence each.
