@@ -7,6 +7,7 @@
 //! face      crest, toe and angle of repose of a profile
 //! polygon   an outline in plan, cut into triangles
 //! prism     integrals under a piece of a triangle
+//! bridges   what lies on triangles over holes
 //! base      what volumes are over: a level, the plane of the rim, another surface
 //! overlay   which triangles of another surface lie under one
 //! layers    whether a mesh's faces lie so that prisms under them add up
@@ -14,6 +15,7 @@
 //! ```
 
 mod base;
+mod bridges;
 mod envelope;
 mod face;
 mod layers;
@@ -24,10 +26,11 @@ mod profile;
 mod volume;
 
 pub use base::{Base, BaseFound, Plane};
+pub use bridges::{BRIDGE, LEAST_BRIDGED};
 pub use face::Face;
 pub use polygon::{MOST_CORNERS, Polygon};
 pub use profile::{Profile, ProfilePoint};
-pub use volume::{BRIDGE, LEAST_BRIDGED, Volume, volume};
+pub use volume::{Volume, volume};
 
 use crate::surface::SurfaceError;
 

@@ -3,8 +3,8 @@
 use glam::{DVec2, DVec3};
 
 use super::SurveyError;
+use super::bridges::long;
 use super::envelope::{Piece, upper_envelope};
-use super::volume::BRIDGE;
 use crate::geometry::Bounds;
 use crate::surface::Surface;
 
@@ -25,7 +25,7 @@ pub struct Profile {
     pub runs: Vec<Vec<ProfilePoint>>,
     /// How long the line is in plan, world units.
     pub length: f64,
-    /// The part of the line, 0 to 1, on triangles of a cloud that it is on for more than [`BRIDGE`] times the median way: no points
+    /// The part of the line, 0 to 1, on triangles of a cloud that it is on for more than [`BRIDGE`](super::BRIDGE) times the median way: no points
     /// lie there. 0 of a mesh.
     pub bridged: f64,
 }
@@ -103,17 +103,10 @@ impl Profile {
         }
     }
 
-    /// The sum of its ways over single triangles that are longer than [`BRIDGE`] times the median one.
+    /// The sum of its ways over single triangles that bridge a hole.
     fn long_ways(&self) -> f64 {
         let pairs = self.runs.iter().flat_map(|run| run.windows(2));
-        let ways = pairs.map(|pair| pair[1].distance - pair[0].distance);
-        let mut ways: Vec<f64> = ways.filter(|way| *way > 0.0).collect();
-        let place = ways.len() / 2;
-        if place >= ways.len() {
-            return 0.0;
-        }
-        let median = *ways.select_nth_unstable_by(place, f64::total_cmp).1;
-        ways.iter().filter(|way| **way > BRIDGE * median).sum()
+        long(pairs.map(|pair| pair[1].distance - pair[0].distance))
     }
 
     /// All its points.

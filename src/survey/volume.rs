@@ -1,18 +1,17 @@
 //! Volume and area of a surface inside a polygon, over a base.
 
-use std::collections::BTreeMap;
-
 use glam::{DVec2, DVec3};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
 use super::SurveyError;
 use super::base::{Base, BaseFound, Plane};
+use super::bridges::Edges;
 use super::layers::{Layers, layers};
 use super::overlay::{Overlay, around};
 use super::polygon::Polygon;
 use super::prism::{Corner, Sums, clip_to};
 use crate::geometry::Bounds;
-use crate::surface::{Patch, Surface, longest_edge};
+use crate::surface::{Patch, Surface};
 
 /// What lies inside a polygon. Lengths in world units, areas in their squares, volumes in their cubes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,15 +39,12 @@ pub struct Volume {
     /// The lowest and the highest of the surface inside the polygon, elevations in the world; `None`
     /// where there is no surface.
     pub heights: Option<[f64; 2]>,
-    /// The part of the plan, 0 to 1, where triangles of a cloud are longer than [`BRIDGE`] times the median one: no points lie
+    /// The part of the plan, 0 to 1, where triangles of a cloud are longer than [`BRIDGE`](super::BRIDGE) times the median one: no points lie
     /// there, and the volume is what a plane between the rims of the hole makes of it. 0 of a mesh.
     pub bridged: f64,
     /// What the volumes are over.
     pub base: BaseFound,
 }
-
-/// Edges of so many times the median one bridge a hole: between points of chance none is longer than five times.
-pub const BRIDGE: f64 = 10.0;
 
 impl Volume {
     /// Fill less cut: the change.
@@ -66,9 +62,6 @@ fn part_of_plan(part: f64) -> f64 {
     }
 }
 
-/// A smaller part of what is measured that triangles bridge is not worth a word.
-pub const LEAST_BRIDGED: f64 = 0.005;
-
 /// What was found of some triangles.
 #[derive(Debug, Clone, Default)]
 struct Found {
@@ -78,46 +71,6 @@ struct Found {
     both: Sums,
     heights: Option<[f64; 2]>,
     edges: Edges,
-}
-
-/// Triangles by the length of their longest edges over (x, y), in eighths of powers of two.
-#[derive(Debug, Clone, Default)]
-struct Edges(BTreeMap<i32, (u64, f64)>);
-
-impl Edges {
-    /// Adds a triangle of which this area counts.
-    fn add(&mut self, corners: [DVec3; 3], area: f64) {
-        let longest = longest_edge(corners.map(|at| at.with_z(0.0)));
-        // `as` saturates: a triangle without length is among the shortest.
-        let step = (longest.log2() * 8.0).floor() as i32;
-        let (count, sum) = self.0.entry(step).or_default();
-        *count += 1;
-        *sum += area;
-    }
-
-    fn and(mut self, other: Self) -> Self {
-        for (step, (count, area)) in other.0 {
-            let entry = self.0.entry(step).or_default();
-            *entry = (entry.0 + count, entry.1 + area);
-        }
-        self
-    }
-
-    /// The area of those that are longer than [`BRIDGE`] times the median one.
-    fn bridged(&self) -> f64 {
-        let all: u64 = self.0.values().map(|(count, _)| count).sum();
-        let mut passed = 0;
-        let median = self.0.iter().find(|(_, (count, _))| {
-            passed += count;
-            2 * passed >= all
-        });
-        let Some((median, _)) = median else {
-            return 0.0;
-        };
-        let limit = median.saturating_add((BRIDGE.log2() * 8.0) as i32);
-        let longer = self.0.range(limit.saturating_add(1)..);
-        longer.map(|(_, (_, area))| area).sum()
-    }
 }
 
 impl Found {
