@@ -6,7 +6,7 @@
 //! ```
 //!
 //! makes FLIGHTS flights of nine photos of each preset, once without errors and once with drawn ones
-//! (position 1 % of the height, angle 0.3°, focal length 0.2 %, world 0.2 %), and prints what README
+//! (position 1 % of the height, angle 0.3°, focal length 0.2 %, world 0.2 %), and prints what docs/scales.md
 //! quotes. Each preset has seeds of its own, from 2100, 3100, 4100 and 5100 on: some of those below served to find the
 //! constants of `scale/uncertainty/` (`unseen.rs`, `bridges.rs`). The truth is the true mesh with the scale
 //! spheres that lie on it (the cloud has them, too), met from the true poses. With CACHE flights are kept there and

@@ -50,12 +50,14 @@
 //! compressed recordings need, `tls` the cryptography for nodes with https, in C as well; without them the command line
 //! needs no GPU library and no C compiler.
 //!
+//! The manual, for those who use it, is `docs/`; `tests/command/manual.rs` holds that its links and examples are understood.
+//!
 //! # To add ... touch ...
 //!
 //! | to add | begin at | which leads to |
 //! |---|---|---|
 //! | a camera model | `src/camera/distortion.rs` | the enum of lens models; the model itself is a file beside it |
-//! | a package | `src/formats/packages/mod.rs` | a row of `packages!`; the reader is a folder beside it; README has a line |
+//! | a package | `src/formats/packages/mod.rs` | a row of `packages!`; the reader is a folder beside it; README's table has a line |
 //! | a column of the photo table | `src/exports/photo_columns.rs` | one row for window, CSV, text and sheet; the contract names those of the CSV |
 //! | an undoable setting of the flight | `src/flight/mod.rs` | `FlightSettings`: undo goes by it; `file.rs`, `file_text.rs`, `known_keys.rs` beside it keep it, `app/panels/flight_settings/` shows it |
 //! | a reason for doubt | `src/flight/doubt/mod.rs` | a variant, its sentence, its word (`kind.rs`) and what shows it (`sight.rs`); found in `verdict.rs`, `placement.rs` beside it, `opening/photo_checks.rs` or `opening/evidence.rs` |

@@ -160,9 +160,9 @@ mod tests {
         };
         let scales = Asked::of(&[Step::Scales]);
         let outlines = Asked::of(&[Step::Scales, Step::Delineate, Step::Export]);
-        // README: 100 M points in a LAZ of 1 GB take 6.5 GB.
+        // docs/speed.md: 100 M points in a LAZ of 1 GB take 6.5 GB.
         assert!(estimate(sizes(GIB, 0, 0), &scales) > 13 * GIB / 2);
-        // README: a photo of 12 megapixels takes 0.7 GB to be outlined.
+        // docs/speed.md: a photo of 12 megapixels takes 0.7 GB to be outlined.
         let photo = estimate(sizes(0, 0, 12_000_000), &outlines);
         assert!((650 * MIB..1000 * MIB).contains(&photo), "{photo}");
         assert!(estimate(sizes(0, 0, 12_000_000), &scales) < 100 * MIB);

@@ -12,7 +12,7 @@
 //! photos show has one point, not n. Nothing is drawn at random. Up to 20 megapixels together k is 1.
 //!
 //! What fewer than three photos have the same (two, where a photo was compared with one alone) makes no point. With two there are
-//! half as many points more, and the surface is not nearer to the true one (README).
+//! half as many points more, and the surface is not nearer to the true one (docs/reconstruct.md).
 //!
 //! # The standard error
 //!

@@ -82,7 +82,7 @@ impl Kind {
 }
 
 /// Everything that can be opened, for messages.
-const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, EPT (ept.json), XYZ/TXT/CSV; what photogrammetry packages write (README lists them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos; size distributions; missions";
+const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, EPT (ept.json), XYZ/TXT/CSV; what photogrammetry packages write (README and docs/flights.md list them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos; size distributions; missions";
 
 /// Where `fragscale reconstruct` puts the model beside the flight that it makes of it.
 pub const MODEL: &str = "reconstruction";

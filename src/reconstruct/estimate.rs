@@ -1,4 +1,4 @@
-//! About how long a reconstruction takes: rates measured on simulated surveys (README has the runs; a core of an
+//! About how long a reconstruction takes: rates measured on simulated surveys (docs/reconstruct.md has the runs; a core of an
 //! AMD EPYC, release build), spread over this computer's cores. It is a plan for the coffee, not a promise: rock
 //! with little texture takes half, a slow disk more.
 

@@ -7,7 +7,7 @@ use crate::dense::Quality as Depths;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Quality {
     /// The sparse cloud: the points that the photos' places were found with. The default, for it costs nothing and its fitted
-    /// scales are as good as those of a dense one (README).
+    /// scales are as good as those of a dense one (docs/reconstruct.md).
     #[default]
     Fast,
     /// A dense cloud from photos of at most 3 megapixels, to which larger ones are reduced.

@@ -32,6 +32,7 @@ mod geotiff;
 mod in_part;
 mod independent_answers;
 mod intervals;
+mod manual;
 mod map;
 mod masks;
 mod mission;

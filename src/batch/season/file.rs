@@ -99,7 +99,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Season, Fault> {
     let fault = |error: toml::de::Error| {
         let remedy = match error.message() {
             "missing field `format`" => "write format = 1 above everything else",
-            _ => "see README, A season of blasts",
+            _ => "see docs/season.md",
         };
         toml_fault(text, &error, remedy)
     };

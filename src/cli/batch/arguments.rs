@@ -13,7 +13,7 @@ use crate::opening::{half_of_the_machines, memory_size};
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct BatchArguments {
-    /// A SEASON.toml (README has its keys), or flights and folders above flights: all that are found below.
+    /// A SEASON.toml (docs/season.md has its keys), or flights and folders above flights: all that are found below.
     #[arg(value_name = "SEASON.toml|FOLDER", required_unless_present = "watch")]
     flights: Vec<PathBuf>,
     /// The folder of the results, with a folder of each flight in it and season.csv, season.html and season.jsonl

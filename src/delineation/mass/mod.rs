@@ -218,7 +218,7 @@ impl Default for Steps {
 impl Steps {
     /// The usual ones for what an engine outlined, or other tools and people (`None`). What these leave without an outline is
     /// fines. An engine does not find small fragments as often as large ones, which makes its sizes too large; without the pores
-    /// they are too small, and the two make up for each other on simulated piles (README): so the pores are left out there.
+    /// they are too small, and the two make up for each other on simulated piles (docs/fragments.md): so the pores are left out there.
     pub fn of(engine: Option<Habits>) -> Self {
         Self {
             edges: true,

@@ -226,7 +226,7 @@ impl Description {
     /// # Errors
     /// What cannot be, with its line where there is one.
     pub fn read(text: &str) -> Result<Self, Fault> {
-        let remedy = "see \"Your own network\" in README for its keys";
+        let remedy = "see \"Your own network\" in docs/fragments.md for its keys";
         let read: Result<Self, toml::de::Error> = toml::from_str(text);
         let description = read.map_err(|error| toml_fault(text, &error, remedy))?;
         description.check()?;

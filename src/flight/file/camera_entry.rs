@@ -114,9 +114,12 @@ impl CameraEntry {
             cx: needed(self.cx, "cx")? + origin,
             cy: needed(self.cy, "cy")? + origin,
             skew: self.skew.unwrap_or(0.0),
-            distortion: self
-                .lens()
-                .map_err(|what| fault(&what, "see the coefficients of each model in README"))?,
+            distortion: self.lens().map_err(|what| {
+                fault(
+                    &what,
+                    "see the coefficients of each model in docs/flights.md",
+                )
+            })?,
         }))
     }
 

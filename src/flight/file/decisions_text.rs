@@ -136,7 +136,7 @@ decision = "left-out"
                 "left-out",
                 "left out",
                 19,
-                "unknown variant `left out`, expected `accepted` or `left-out`; see the flight file's format in README",
+                "unknown variant `left out`, expected `accepted` or `left-out`; see the flight file's format in docs/flights.md",
             ),
             (
                 "note =",
@@ -154,7 +154,7 @@ decision = "left-out"
                 "decision = \"left-out\"\n",
                 "",
                 17,
-                "missing field `decision`; see the flight file's format in README",
+                "missing field `decision`; see the flight file's format in docs/flights.md",
             ),
             (
                 "[[review]]\nphoto = \"b",

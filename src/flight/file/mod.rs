@@ -250,7 +250,11 @@ impl FlightFile {
     /// one, or contradicts itself.
     pub fn parse(text: &str) -> Result<Self, Fault> {
         let fault = |error: toml::de::Error| {
-            toml_fault(text, &error, "see the flight file's format in README")
+            toml_fault(
+                text,
+                &error,
+                "see the flight file's format in docs/flights.md",
+            )
         };
         let table = DeTable::parse(text).map_err(fault)?;
         refuse_unknown_keys(&KNOWN_KEYS, text, table.get_ref())?;

@@ -1,6 +1,6 @@
 //! Cameras and posed photos as photogrammetry packages and recordings hold them.
 //!
-//! A package is a folder here and a row in the list below; besides, README has a line for it. Which
+//! A package is a folder here and a row in the list below; besides, README's table has a line for it. Which
 //! of several in a folder is meant, where one makes the files of another, says candidates/.
 
 pub(crate) mod blocks_exchange;

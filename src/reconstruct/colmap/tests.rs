@@ -1,5 +1,5 @@
 //! The engine with a script in COLMAP's place, which prints and writes what COLMAP 3.8 does. Real photos
-//! through the real program: `crate::tests`, and the README's table of engines.
+//! through the real program: `crate::tests`, and the table of engines in docs/reconstruct.md.
 
 use std::fs;
 use std::io::ErrorKind;

@@ -404,7 +404,7 @@ fn the_bundled_flight_is_what_the_command_makes() {
         let same = made == fs::read(there).unwrap();
         assert!(
             same,
-            "{name} differs; make the bundled flight anew (see README)"
+            "{name} differs; make the bundled flight anew (see docs/sample.md)"
         );
     }
 }

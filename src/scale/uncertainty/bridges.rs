@@ -13,7 +13,7 @@
 //! with few points has long triangles, too, and hides nothing.
 //!
 //! The constants are fitted with those of `unseen`, which tells to what photos (what is hidden 0.38 to 0.46, the deviation 0.77
-//! to 0.82), and taken somewhat larger, for benches, which have most of the bridges and need more of both. README's
+//! to 0.82), and taken somewhat larger, for benches, which have most of the bridges and need more of both. docs/scales.md's
 //! coverage is of other piles (`benches/coverage.rs`).
 
 use glam::DVec3;

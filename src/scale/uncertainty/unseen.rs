@@ -30,7 +30,7 @@
 //! surface cuts the tops off the stones, which makes scales too small and is taken off the rest. Of three sparse flights
 //! (`reconstruct`, *fast*, 105 photos each: bench 6101, muckpile 6201, stockpile 6301) the mean depth was short by 0.38, 0.11
 //! and 0.04 %, where the gaps alone say 0.5, 0.3 and 0.3 and the tops 0.26, 0.23 and 0.2 back. [`SPREAD_OF_BIAS`] is what
-//! holds the lines of those three and of `sample`'s clouds of the same places. README's coverage is of
+//! holds the lines of those three and of `sample`'s clouds of the same places. The coverage in docs/scales.md is of
 //! other piles (`benches/coverage.rs`).
 //!
 //! Who looks flatly does not see into gaps. Of those three, less what stands above, the ends of lines at which rays meet the

@@ -73,7 +73,7 @@ pub(super) fn masks(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
 /// Which file describes the network.
 pub(super) fn network(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.label(
-        "The TOML file that describes an ONNX model of yours, which lies beside it: what it takes and gives (README, \"Your own \
+        "The TOML file that describes an ONNX model of yours, which lies beside it: what it takes and gives (docs/fragments.md, \"Your own \
          network\"). It runs on this computer alone.",
     );
     let browse = [("File…", Dialog::file("Description of the network"))];

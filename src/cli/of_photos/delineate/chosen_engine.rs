@@ -29,7 +29,7 @@ impl ChosenEngine {
         let ending = Path::new(text).extension().unwrap_or_default();
         match ending.to_ascii_lowercase().to_string_lossy().as_ref() {
             "toml" => Ok(Self::Described(text.into())),
-            "onnx" => Err("a model needs a description: name the TOML file that has one (README, \"Your own network\")".to_owned()),
+            "onnx" => Err("a model needs a description: name the TOML file that has one (docs/fragments.md, \"Your own network\")".to_owned()),
             _ => Err("learned, classical, saved, or a TOML file that describes an ONNX model".to_owned()),
         }
     }

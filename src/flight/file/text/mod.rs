@@ -187,7 +187,7 @@ fn document(text: &str) -> Result<DocumentMut, Fault> {
     text.parse().map_err(|error: toml_edit::TomlError| {
         Fault::new(
             error.message().to_owned(),
-            "see the flight file's format in README",
+            "see the flight file's format in docs/flights.md",
         )
     })
 }
