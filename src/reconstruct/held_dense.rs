@@ -38,7 +38,7 @@ const AT_ONCE: usize = 100_000;
 /// Where the work was cancelled.
 pub(crate) fn held(dense: Cloud, sparse: &Cloud, progress: &Progress) -> Result<Cloud, Fault> {
     let mut cloud = without_flying(dense, sparse, progress)?;
-    for place in joining(&cloud, sparse) {
+    for place in joining(&cloud, sparse, progress)? {
         cloud.points.push(sparse.points[place]);
         if let (false, Some(color)) = (cloud.colors.is_empty(), sparse.colors.get(place)) {
             cloud.colors.push(*color);
@@ -96,32 +96,43 @@ fn only(cloud: Cloud, keeps: &[bool]) -> Cloud {
 }
 
 /// The sparse points that lie where no dense one is near.
-fn joining(dense: &Cloud, sparse: &Cloud) -> Vec<usize> {
+fn joining(dense: &Cloud, sparse: &Cloud, progress: &Progress) -> Result<Vec<usize>, Fault> {
     // Colours are of all points or of none.
     if !dense.colors.is_empty() && sparse.colors.is_empty() {
-        return Vec::new();
+        return Ok(Vec::new());
     }
-    let tree = RTree::bulk_load(dense.points.iter().map(|p| [p.x, p.y]).collect());
+    let all = dense.points.len() as u64;
+    let flat = |points: &[DVec3]| points.iter().map(|point| [point.x, point.y]).collect();
+    // Several trees in place of one, which nobody could cancel while it is made.
+    let trees = dense.points.par_chunks(AT_ONCE).map(|points| {
+        progress.advance(all, all)?;
+        Ok(RTree::bulk_load(flat(points)))
+    });
+    let trees: Vec<RTree<[f64; 2]>> = trees.collect::<Result<_, Fault>>()?;
+    // How far the nearest dense points are, ascending: the two nearest of all are among the two of each tree.
+    let nearest = |point: &DVec3| {
+        let near = trees.iter().flat_map(|tree| {
+            let near = tree.nearest_neighbor_iter_with_distance_2([point.x, point.y]);
+            near.take(2).map(|(_, squared)| squared.sqrt())
+        });
+        let mut near: Vec<f64> = near.collect();
+        near.sort_unstable_by(f64::total_cmp);
+        near
+    };
     let every = (dense.points.len() / LOOKED_AT).max(1);
     let looked_at: Vec<&DVec3> = dense.points.iter().step_by(every).collect();
-    let spacing = |point: &&DVec3| {
-        let mut near = tree.nearest_neighbor_iter_with_distance_2([point.x, point.y]);
-        near.nth(1).map(|(_, squared)| squared.sqrt())
+    // The nearest to a point is itself.
+    let spacings = looked_at.par_iter();
+    let spacings = spacings.filter_map(|point| nearest(point).get(1).copied());
+    let Some(spacing) = median(&mut spacings.collect::<Vec<f64>>()) else {
+        return Ok(Vec::new());
     };
-    let mut spacings: Vec<f64> = looked_at.par_iter().filter_map(spacing).collect();
-    let Some(spacing) = median(&mut spacings) else {
-        return Vec::new();
-    };
-    let is_alone = |point: &DVec3| {
-        let nearest = tree
-            .nearest_neighbor_iter_with_distance_2([point.x, point.y])
-            .next();
-        nearest.is_none_or(|(_, squared)| squared.sqrt() > GAP * spacing)
-    };
+    progress.advance(all, all)?;
+    let is_alone = |point: &DVec3| (nearest(point).first()).is_none_or(|far| *far > GAP * spacing);
     let points = sparse.points.par_iter().enumerate();
-    points
+    Ok(points
         .filter_map(|(place, point)| is_alone(point).then_some(place))
-        .collect()
+        .collect())
 }
 
 #[cfg(test)]
@@ -163,7 +174,7 @@ mod tests {
         let all = dense.points.len();
         let kept = without_flying(dense, &sparse, &Progress::default()).unwrap();
         assert_eq!(all - kept.points.len(), 4);
-        let joined = joining(&kept, &sparse).len();
+        let joined = joining(&kept, &sparse, &Progress::default()).unwrap().len();
         let cloud = held(kept, &sparse, &Progress::default()).unwrap();
         for (point, stays) in more {
             assert_eq!(cloud.points.contains(&point), stays, "{point}");
