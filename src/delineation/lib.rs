@@ -20,6 +20,7 @@ pub mod choice;
 mod classical;
 mod delineating;
 mod engine;
+mod engines;
 mod evidence;
 mod hull;
 mod kept;
@@ -40,21 +41,14 @@ mod votes;
 
 pub use classical::Classical;
 pub use delineating::{Delineated, delineate, delineated, leave_out};
-pub use engine::{Engine, Outlined, ReadyEngine};
+pub use engine::{Engine, Habits, Outlined};
+pub use engines::{ENGINES, engine_called};
 pub use evidence::Evidence;
 pub use fragscale_core::labels;
 pub use fragscale_core::labels::{FINES, LabelImage, NOT_ROCK};
 pub use learned::Learned;
 pub use mass::{intervals, tail};
-pub use named::{Description, NamedModel};
-pub use outlined_by::{Habits, OutlinedBy, Outliner};
+pub use named::{Description, NamedModel, ReadyEngine};
+pub use outlined_by::{OutlinedBy, Outliner};
 pub use regions::Regions;
 pub use votes::{VoteSums, Votes};
-
-/// All engines that the program brings along; the first is the one that measured best.
-pub static ENGINES: [&dyn Engine; 2] = [&Learned, &Classical];
-
-/// The engine that is called so in files; `None` for outlines of other tools.
-pub fn engine_called(name: &str) -> Option<&'static dyn Engine> {
-    ENGINES.into_iter().find(|engine| engine.name() == name)
-}

@@ -14,8 +14,9 @@ use fragscale_core::fault::Fault;
 use glam::DVec2;
 use serde_json::{Value, json};
 
-use crate::engine_called;
-use crate::outlined_by::{Habits, Outliner};
+use crate::engine::Habits;
+use crate::engines::engine_called;
+use crate::outlined_by::Outliner;
 
 /// How far a place may lie elsewhere in the photo, pixels: no fragment changes by it.
 const SAME_PLACE: f64 = 0.5;

@@ -23,7 +23,7 @@ use std::sync::Arc;
 pub use date::Date;
 pub use decision::{Decision, DecisionKind};
 pub use difference::{Difference, DifferenceReason};
-pub use doubt::{Doubt, InView, OnPhoto, Sight};
+pub use doubt::Doubt;
 pub use evidence::{ColoursFound, Evidence, LookedUp, MetadataRead, PhotoFileState};
 pub use file::{
     CameraEntry, CameraSource, FlightFile, PhotoSource, PosesFlight, ReconstructionFlight,
@@ -31,7 +31,7 @@ pub use file::{
 pub use name_order::compare_names;
 pub use placed::{Placed, moved_errors};
 pub use placement::Placement;
-pub use review::{Along, PhotoReview, Review};
+pub use review::{Along, InView, OnPhoto, PhotoReview, Review, Sight};
 pub use scale_object::{ComparedObject, ScaleObject};
 pub use verdict::{Limits, Verdict};
 

@@ -58,7 +58,6 @@ pub use mission::{
     Above, DroneCodes, Fence, Finish, Flown, Height, Mission, PayloadCodes, PhotoOf, PlannedPose,
     Residual, Stop, TakeOff, Taken, Told, heading, is_over_ground, missions, planned_poses,
 };
-pub use patterns::Pattern;
 pub use photo::{PlannedPhoto, Purpose, Refused};
 pub use steadiness::{PoseErrors, Positioning};
 pub use sun::{Shadows, Sun};
@@ -68,7 +67,7 @@ pub use way::{
     return_height, set_height,
 };
 pub use wish::{
-    AskedPlan, Edit, PhotoAt, Size, SurveyWish, USUAL_CLEARANCE, USUAL_OFF_NORMAL,
+    AskedPlan, Edit, Pattern, PhotoAt, Size, SurveyWish, USUAL_CLEARANCE, USUAL_OFF_NORMAL,
     USUAL_SURVEY_OVERLAP, USUAL_TILT, Wish,
 };
 

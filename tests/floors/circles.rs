@@ -48,7 +48,7 @@ fn module_of(src: &Path, file: &Path, members: &[String]) -> Module {
 
 /// The code without comments and tests.
 fn code(text: &str) -> String {
-    let code = text.split("#[cfg(test)]\nmod tests").next();
+    let code = text.split("#[cfg(test)]\nmod tests {").next();
     let lines = code.unwrap_or_default().lines();
     let bare = lines.map(|line| line.split("//").next().unwrap_or_default());
     bare.collect::<Vec<_>>().join("\n")

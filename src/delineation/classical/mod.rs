@@ -17,9 +17,8 @@ use image::RgbImage;
 use rayon::prelude::*;
 
 use crate::choice::Scorer;
-use crate::engine::Engine;
+use crate::engine::{Engine, Habits};
 use crate::evidence::{Evidence, gray};
-use crate::outlined_by::Habits;
 use crate::smoothing::smoothed_floats;
 
 static SCORER: LazyLock<Option<Scorer>> = LazyLock::new(|| {

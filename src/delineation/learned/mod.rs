@@ -18,10 +18,9 @@ use rten_tensor::prelude::*;
 use rten_tensor::{NdTensor, NdTensorView};
 
 use crate::choice::Scorer;
-use crate::engine::Engine;
+use crate::engine::{Engine, Habits};
 use crate::evidence::{Evidence, gray};
 use crate::network::{self, Channels, Input, Normal, Parts};
-use crate::outlined_by::Habits;
 use crate::votes::{SIZE_OF_ONE, Votes};
 
 /// The network halves its picture five times, and wants sides that can be; it knows nothing of what lies beyond the

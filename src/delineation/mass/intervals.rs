@@ -8,8 +8,8 @@
 use fragscale_core::fault::Fault;
 use fragscale_core::scale::Draws;
 
+use crate::engine::Habits;
 use crate::mass::{PhotoFragments, Steps, by_mass};
-use crate::outlined_by::Habits;
 
 /// Of outlines that are as right as they can be. Nobody knows a pile's porosity: by outlines of simulated piles a P50 is as it
 /// is by the sieves with the usual one, 11 % too small with none, 3 % too large with 0.5.

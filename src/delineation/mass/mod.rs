@@ -34,9 +34,10 @@ use glam::DVec2;
 
 use self::counted::Counted;
 use crate::bare::bare;
+use crate::engine::{Habits, LEAST_PIXELS_ACROSS};
 use crate::labels::{FINES, LabelImage, NOT_ROCK};
 use crate::measures::{Fragment, Measures};
-use crate::outlined_by::{Habits, LEAST_PIXELS_ACROSS, OutlinedBy};
+use crate::outlined_by::OutlinedBy;
 
 /// The largest circle within the outline of a ball, over the circle of its area: 0.97 and more in the nine photos of the
 /// bundled flight, while no fragment among the largest 200 has over 0.93.

@@ -44,7 +44,7 @@ use serde::Deserialize;
 
 use crate::classical::Classical;
 use crate::engine::Engine;
-use crate::engine_called;
+use crate::engines::engine_called;
 
 /// Sides of what a network sees at once, pixels.
 const SIDES: std::ops::RangeInclusive<usize> = 16..=4096;

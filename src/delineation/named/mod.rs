@@ -13,6 +13,7 @@ mod instances;
 mod model;
 mod outputs;
 mod prompted;
+mod ready;
 #[cfg(test)]
 mod tests;
 
@@ -24,14 +25,15 @@ use image::RgbImage;
 use rten::{Model, NodeId, Value, ValueOrView};
 
 pub use description::Description;
+pub use ready::ReadyEngine;
 
 use crate::choice::Scorer;
 use crate::classical::Classical;
-use crate::engine::{Engine, Outlined};
+use crate::engine::{Engine, Habits, Outlined};
+use crate::engines::engine_called;
 use crate::evidence::{Evidence, gray};
 use crate::learned::Learned;
 use crate::network::{self, Channels, Input, Layout, Normal, Part, Parts};
-use crate::outlined_by::Habits;
 use description::{ChannelsWord, LayoutWord, Meaning, OutputEntry};
 use instances::{Instance, Instances, Seen};
 use model::{input_of, loaded, outputs_of, parts_of};
@@ -90,7 +92,7 @@ impl NamedModel {
             .unwrap_or(name)
             .trim()
             .to_owned();
-        if name.is_empty() || crate::engine_called(&name).is_some() {
+        if name.is_empty() || engine_called(&name).is_some() {
             let what = format!("\"{name}\" is no name for it");
             return Err(Fault::new(what, "give another name in the description"));
         }

@@ -1,12 +1,10 @@
 //! What outlined a photo's fragments.
 
-mod habits;
+mod outliner;
 
-pub use habits::{Habits, Outliner};
+pub use outliner::Outliner;
 
-pub(crate) use habits::LEAST_PIXELS_ACROSS;
-
-use crate::engine::Engine;
+use crate::engine::{Engine, Habits};
 
 /// What outlined a photo's fragments.
 #[derive(Debug, Clone, Copy, PartialEq)]

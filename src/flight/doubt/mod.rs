@@ -1,11 +1,8 @@
 //! Reasons not to trust a photo's scale, as sentences that an engineer reads.
 
 pub(crate) mod kind;
-mod sight;
 
 use std::fmt;
-
-pub use sight::{InView, OnPhoto, Sight};
 
 use crate::numbers::to_digits;
 use crate::scale::{CornerName, LEAST_COVERED, PointNoise};

@@ -6,6 +6,7 @@
 //! take longer than scales. Whatever is added, all photos are judged again, by one function.
 
 mod photo;
+mod sight;
 
 use std::sync::Arc;
 
@@ -19,6 +20,7 @@ use crate::jobs::Progress;
 use crate::scale::{FieldFacts, ScalePair, StatedErrors, ViewFacts};
 
 pub use photo::{Along, PhotoReview};
+pub use sight::{InView, OnPhoto, Sight};
 
 /// A flight with everything that is known of its photos.
 #[derive(Debug, Clone)]

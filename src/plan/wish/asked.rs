@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::{Size, SurveyWish, USUAL_CLEARANCE, USUAL_OFF_NORMAL, USUAL_TILT, Wish};
-use crate::plan::{Drone, Flying, Pattern, Positioning};
+use super::{Pattern, Size, SurveyWish, USUAL_CLEARANCE, USUAL_OFF_NORMAL, USUAL_TILT, Wish};
+use crate::plan::{Drone, Flying, Positioning};
 use crate::survey::{Polygon, SurveyError};
 
 /// What the engineer asks of a plan. Lengths are in world units.

@@ -1,12 +1,14 @@
 //! What is wished of a plan, and what is usual where nobody says it: the window and the command line ask here.
 
 mod asked;
+mod pattern;
 
 use glam::DVec2;
 
 pub use asked::{AskedPlan, Edit, PhotoAt};
+pub use pattern::Pattern;
 
-use super::{Drone, Pattern, PoseErrors, Positioning, Purpose};
+use super::{Drone, PoseErrors, Positioning, Purpose};
 use crate::survey::Polygon;
 
 /// How far scales may be off where nobody says it: a tenth of the wished one, as a scale of 20 ± 2.

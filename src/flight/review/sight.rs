@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::Doubt;
-use crate::flight::PhotoReview;
+use super::PhotoReview;
+use crate::flight::Doubt;
 use crate::scale::{Corner, CornerName};
 
 /// How much of the surface around a corner is shown, as a share of the footprint's mean edge: its triangle

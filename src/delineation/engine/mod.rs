@@ -1,6 +1,9 @@
-//! What finds the borders of fragments in a photo.
+//! What finds the borders of fragments in a photo, and how it errs.
 
-use std::sync::Arc;
+mod habits;
+
+pub use habits::Habits;
+pub(crate) use habits::LEAST_PIXELS_ACROSS;
 
 use fragscale_core::fault::Fault;
 use fragscale_core::jobs::Progress;
@@ -9,8 +12,6 @@ use image::RgbImage;
 use crate::choice::Scorer;
 use crate::evidence::Evidence;
 use crate::labels::LabelImage;
-use crate::named::NamedModel;
-use crate::outlined_by::Habits;
 
 /// Fragments as an engine outlines them.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,23 +52,4 @@ pub trait Engine: Send + Sync {
     /// # Errors
     /// Where its numbers cannot be read.
     fn scorer(&self) -> Result<&Scorer, Fault>;
-}
-
-/// An engine that is ready.
-#[derive(Clone)]
-pub enum ReadyEngine {
-    /// One that the program brings along.
-    BroughtAlong(&'static dyn Engine),
-    /// The user's.
-    Named(Arc<NamedModel>),
-}
-
-impl ReadyEngine {
-    /// The engine itself.
-    pub fn engine(&self) -> &dyn Engine {
-        match self {
-            Self::BroughtAlong(engine) => *engine,
-            Self::Named(model) => &**model,
-        }
-    }
 }
