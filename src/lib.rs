@@ -12,8 +12,8 @@
 //! core, `fragmentation/`, `delineation/`, `formats/`, `opening/`, `exports/`, `render/`, `dense/`, `reconstruct/`,
 //! `node_odm/`, `batch/`, `sample/`, `app/`,
 //! and here `cli/`. This crate re-exports all of them. The compiler holds who may use whom
-//! between members, `tests/floors.rs` the floors within the core, that no circle of imports is longer
-//! than two files, and that no folder has more than 15 files lying flat.
+//! between members, `tests/floors.rs` the floors within the core, that no files use each other in a
+//! circle, and that no folder has more than 15 files lying flat.
 //!
 //! ```text
 //! F7  main.rs  cli/              the command line: parses, calls, prints

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use crate::camera::Pose;
-use crate::command::ViewChange;
+use crate::command::view_change::ViewChange;
 use crate::geometry::{Bounds, LocalFrame};
 use crate::opening::SurfaceSample;
 use crate::reconstruct::Growth;

@@ -93,9 +93,6 @@ pub const UNFINISHED: &str = "unfinished/photos.txt";
 /// The same where its photos could not be reconstructed: why, and what to do about it, one line.
 pub const FAILED: &str = "unfinished/failed.txt";
 
-/// How many bytes of a file are looked at to tell its kind.
-pub(crate) const DETECTED_BY: usize = 4096;
-
 /// Tells what a file or folder holds: by its first bytes where they are distinctive, else by its
 /// name.
 ///

@@ -4,6 +4,7 @@
 //! ```text
 //! detect      what kind a file or folder is
 //! candidates  the reconstructions that lie in a folder
+//! meant       which of them a path may stand for
 //! read        which reader takes it
 //! clouds  cameras  packages  poses  photos  tables      the readers
 //! missions    of drones, each told by what is in it
@@ -21,6 +22,7 @@ mod candidates;
 pub mod clouds;
 mod detect;
 pub mod masks;
+mod meant;
 pub mod missions;
 pub mod packages;
 pub mod photos;
@@ -36,11 +38,12 @@ use fragscale_core::{
 use fragscale_fragmentation as fragmentation;
 
 pub use areas::{MapAreas, areas, holds_areas, read_areas};
-pub use candidates::{Candidate, candidates};
+pub use candidates::Candidate;
 pub use clouds::{CloudFile, CloudPiece, CloudPieces};
 pub use detect::{CloudFormat, FAILED, Kind, MODEL, UNFINISHED, detect};
 pub use files::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use masks::{MaskFile, Masks, OutlinedPhoto, read_masks};
+pub use meant::candidates;
 pub use missions::{MissionFile, read_mission};
 pub use packages::Package;
 pub use packages::drone_photos::{Cameras as PhotoCameras, expected_deviation};

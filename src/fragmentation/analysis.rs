@@ -13,9 +13,6 @@ use super::{
 use crate::fault::Fault;
 use crate::jobs::Progress;
 
-/// The percents passing whose sizes are told where nobody chose others.
-pub const PERCENTILES: [f64; 5] = [10.0, 20.0, 50.0, 80.0, 90.0];
-
 /// Those of them that figures mark.
 pub const MARKED_PERCENTILES: [f64; 2] = [50.0, 80.0];
 

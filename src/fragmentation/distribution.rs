@@ -2,6 +2,9 @@
 
 use crate::fault::Fault;
 
+/// The percents passing whose sizes are told where nobody chose others.
+pub const PERCENTILES: [f64; 5] = [10.0, 20.0, 50.0, 80.0, 90.0];
+
 /// Cumulative percent passing by size, at least two points.
 ///
 /// Sizes are above 0 and strictly ascending, percents are 0 to 100 and never fall. Between two points
@@ -94,6 +97,12 @@ impl SizeDistribution {
         let share = (percent - lower[1]) / (upper[1] - lower[1]);
         Some(lower[0] * (upper[0] / lower[0]).powf(share))
     }
+}
+
+/// A measured size as it was typed: units that were converted left 2.2399999999999998 of 2.24.
+pub(crate) fn as_typed(size: f64) -> String {
+    let near: Option<f64> = format!("{size:.5e}").parse().ok();
+    near.unwrap_or(size).to_string()
 }
 
 #[cfg(test)]

@@ -32,15 +32,13 @@ mod sieve_series;
 
 use fragscale_core::{fault, jobs, units};
 
-pub use analysis::{
-    Analysis, AnalysisOptions, MARKED_PERCENTILES, PERCENTILES, SIGNIFICANCE, fit_each,
-};
+pub use analysis::{Analysis, AnalysisOptions, MARKED_PERCENTILES, SIGNIFICANCE, fit_each};
 pub use anova::{Anova, Repeatability, Variation, repeatability};
 pub use comparison::{
     Comparison, ComparisonOptions, CurveNorm, Improvement, MeanPoint, MethodComparison,
     MethodCurve, PERCENT_ERROR, PercentError, PercentileShift, SCALE_WARNING, Shift, Span, compare,
 };
-pub use distribution::SizeDistribution;
+pub use distribution::{PERCENTILES, SizeDistribution};
 pub use distribution_set::{DistributionSet, LabelledDistribution, Labels};
 pub use effort::{Effort, TimeSum};
 pub use fit::{Fit, FitOptions, FittedParameter, Percentile, TOPSIZE_PERCENT, fit};

@@ -1,8 +1,6 @@
 //! What an edit changes: pixels from one label to another, so that it can be undone to the bit.
 
-use std::collections::BTreeSet;
-
-use super::{LabelImage, Outlines};
+use super::LabelImage;
 
 /// Pixels next to each other in the order of rows, all of one label before and all of one after.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,12 +14,14 @@ struct Run {
 /// How sure a fragment is: `None` where a person looked at it.
 pub(super) type Sure = Option<f64>;
 
+/// The number of a fragment with how sure it was and is.
+type ChangedSure = (u32, Sure, Sure);
+
 /// An edit, made but not yet done.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Change {
     runs: Vec<Run>,
-    /// Numbers of fragments with how sure they were and are.
-    pub(super) sure: Vec<(u32, Sure, Sure)>,
+    pub(super) sure: Vec<ChangedSure>,
 }
 
 impl Change {
@@ -35,22 +35,13 @@ impl Change {
         self.runs.is_empty()
     }
 
-    /// What makes outlines others of as many pixels.
-    pub(super) fn between(before: &Outlines, after: &Outlines) -> Self {
+    /// What makes labels others of as many pixels.
+    pub(super) fn between(before: &LabelImage, after: &LabelImage, sure: Vec<ChangedSure>) -> Self {
         let mut runs = Runs::default();
-        let labels = before.labels().labels.iter().zip(&after.labels().labels);
-        for (place, (before, after)) in labels.enumerate() {
+        for (place, (before, after)) in before.labels.iter().zip(&after.labels).enumerate() {
             runs.add(place, *before, *after);
         }
-        let numbers = before.all_sure().keys().chain(after.all_sure().keys());
-        let numbers: BTreeSet<u32> = numbers.copied().collect();
-        let sure = numbers.into_iter();
-        Self {
-            runs: runs.0,
-            sure: sure
-                .map(|number| (number, before.sure(number), after.sure(number)))
-                .collect(),
-        }
+        Self { runs: runs.0, sure }
     }
 
     /// Does it, or undoes it.

@@ -2,7 +2,7 @@
 //! are; nothing is done to them here. Places are in pixels of the undistorted photo, (0, 0) at the outer corner
 //! of the top left one.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
 use glam::DVec2;
 
@@ -204,7 +204,11 @@ impl Outlines {
 
     /// What makes these outlines those others of the same photo.
     pub fn become_these(&self, other: &Self) -> Change {
-        Change::between(self, other)
+        let numbers = self.all_sure().keys().chain(other.all_sure().keys());
+        let numbers: BTreeSet<u32> = numbers.copied().collect();
+        let sure = numbers.into_iter();
+        let sure = sure.map(|number| (number, self.sure(number), other.sure(number)));
+        Change::between(self.labels(), other.labels(), sure.collect())
     }
 
     /// No change.

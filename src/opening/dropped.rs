@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::OpenOptions;
 use crate::fault::Fault;
 use crate::files::FileError;
+use crate::formats::missions::no_flight_but_mission;
 use crate::formats::tables::size_distributions::no_flight_but_sizes;
 use crate::formats::{Kind, Package, detect};
 
@@ -61,14 +62,6 @@ impl Dropped {
         dropped.options.photos = photos;
         Ok(dropped)
     }
-}
-
-/// A mission where a flight is needed.
-pub(crate) fn no_flight_but_mission() -> Fault {
-    Fault::new(
-        "it holds a drone's mission, not a flight",
-        "say what it says with 'fragscale mission FILE'; with the flight that came of it 'fragscale flown FLIGHT --mission FILE', or drop it on the window where that flight is open",
-    )
 }
 
 fn no_part(path: &Path, kind: &Kind) -> FileError {

@@ -4,7 +4,7 @@ use glam::DVec2;
 use image::RgbImage;
 use rayon::prelude::*;
 
-use super::pyramid::Part;
+use super::pyramid::part::Part;
 use super::reduce::{reduced_size, reduced_to};
 use super::resample::cubic;
 use super::warp::{CELL, Cell, bilinear};

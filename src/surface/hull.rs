@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use robust::{Coord, orient2d};
 
-use super::sites::site_place;
+use super::sites::place::site_place;
 
 /// The corners of the convex hull in (x, y), counter-clockwise, without points inside its edges.
 /// Fewer than three where all points lie on one line. Exact: decided by adaptive predicates.

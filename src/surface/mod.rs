@@ -20,6 +20,7 @@ mod patches;
 mod sites;
 mod thinning;
 mod tiles;
+mod triangle_blocks;
 mod up_axis;
 mod walk;
 

@@ -5,7 +5,7 @@ mod asking;
 mod destination;
 mod dialog;
 mod review_step;
-mod view_change;
+pub(crate) mod view_change;
 
 use std::path::PathBuf;
 

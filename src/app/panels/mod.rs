@@ -3,6 +3,7 @@
 mod cloud_alone;
 mod control_points;
 mod corner_loupe;
+mod corner_marks;
 mod dialogs;
 mod field;
 mod flight_settings;

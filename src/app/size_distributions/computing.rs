@@ -3,10 +3,10 @@
 
 use super::Edit;
 use super::drawing::Drawing;
+use super::fitted_curve::FittedCurve;
 use crate::fault::Fault;
 use crate::fragmentation::{
-    Analysis, AnalysisOptions, DistributionSet, Fit, FitOptions, Labels, PERCENTILES, Percentile,
-    fit_each,
+    Analysis, AnalysisOptions, DistributionSet, FitOptions, PERCENTILES, fit_each,
 };
 use crate::jobs::Progress;
 
@@ -23,17 +23,6 @@ pub struct Computed {
     pub fits: Vec<FittedCurve>,
     /// What the plot draws.
     pub drawing: Drawing,
-}
-
-/// The function fitted to a curve.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FittedCurve {
-    /// What the curve is of.
-    pub labels: Labels,
-    /// The fit, or why there is none.
-    pub fit: Result<Fit, Fault>,
-    /// Of `PERCENTILES`, with their bands; empty without a fit.
-    pub percentiles: Vec<Percentile>,
 }
 
 /// Computes everything.
@@ -68,13 +57,12 @@ pub(crate) fn compute(edition: u64, edit: Edit, progress: &Progress) -> Result<C
             fit,
         }
     });
-    let mut computed = Computed {
+    let fits: Vec<FittedCurve> = fits.collect();
+    Ok(Computed {
         edition,
-        fits: fits.collect(),
+        drawing: Drawing::of(&analysis, &fits),
+        fits,
         analysis,
-        drawing: Drawing::default(),
         edit,
-    };
-    computed.drawing = Drawing::of(&computed);
-    Ok(computed)
+    })
 }

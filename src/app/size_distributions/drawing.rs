@@ -4,9 +4,9 @@
 
 use egui_plot::PlotPoint;
 
-use super::computing::Computed;
+use super::fitted_curve::FittedCurve;
 use crate::exports::FigureStyle;
-use crate::fragmentation::{Curve, Labels, MARKED_PERCENTILES, MethodCurve};
+use crate::fragmentation::{Analysis, Curve, Labels, MARKED_PERCENTILES, MethodCurve};
 
 /// How many points a drawn function has.
 const STEPS: u32 = 160;
@@ -54,19 +54,19 @@ pub struct Area {
 }
 
 impl Drawing {
-    /// Of what was computed.
-    pub(super) fn of(computed: &Computed) -> Self {
-        let points = computed.analysis.photos.curves.iter();
+    /// Of an analysis and the function fitted to each curve of its trials.
+    pub(super) fn of(analysis: &Analysis, fits: &[FittedCurve]) -> Self {
+        let points = analysis.photos.curves.iter();
         let sizes = points.flat_map(|curve| curve.distribution.points().iter().map(|p| p[0]));
         let (low, high) = sizes.fold((f64::INFINITY, 0.0_f64), |(low, high), size| {
             (low.min(size), high.max(size))
         });
         // A little further than measured: functions are told from lines between points.
         let (low, high) = (low / 2.0, high * 1.5);
-        let comparison = computed.analysis.comparison.as_ref().ok();
+        let comparison = analysis.comparison.as_ref().ok();
         let mut others = 0;
-        let methods = computed.analysis.methods.iter().map(|method| {
-            let is_reference = Some(method) == computed.analysis.reference.as_ref();
+        let methods = analysis.methods.iter().map(|method| {
+            let is_reference = Some(method) == analysis.reference.as_ref();
             let style = if is_reference {
                 FigureStyle::REFERENCE
             } else {
@@ -74,8 +74,7 @@ impl Drawing {
                 FigureStyle::of(others)
             };
             let of_method = |labels: &Labels| labels.method == *method;
-            let curves = computed
-                .analysis
+            let curves = analysis
                 .photos
                 .curves
                 .iter()
@@ -85,7 +84,7 @@ impl Drawing {
                 let points = points.map(|&[size, percent]| at(size, percent)).collect();
                 (curve.labels.clone(), points)
             });
-            let fitted = computed.fits.iter().filter(|f| of_method(&f.labels));
+            let fitted = fits.iter().filter(|f| of_method(&f.labels));
             let fits = fitted.clone().filter_map(|fitted| {
                 let fit = fitted.fit.as_ref().ok()?;
                 Some((fitted.labels.clone(), line(&fit.curve, low, high)))

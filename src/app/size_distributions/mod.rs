@@ -17,6 +17,7 @@ pub mod command;
 pub mod computing;
 pub mod drawing;
 mod effort;
+pub mod fitted_curve;
 pub mod measured;
 pub mod reading;
 pub mod saving;

@@ -1,7 +1,7 @@
 //! The legend of a sheet's map.
 
 use super::FlightSheet;
-use super::map::{DASHES, TAKE_OFF, WAY, area_line, keep_out_area, way_line};
+use super::signs::{DASHES, TAKE_OFF, WAY, area_line, keep_out_area, way_line};
 use crate::drawing::{Anchor, Dash, Marker, Pen};
 use crate::flight::Verdict;
 use crate::plan::PlanInks;

@@ -9,6 +9,7 @@ use image::{Rgba, RgbaImage};
 
 use super::FlightSheet;
 use super::legend::legend;
+use super::signs::{DASHES, TAKE_OFF, WAY, area_line, keep_out_area, way_line};
 use crate::drawing::{Anchor, Colour, Dash, Marker, Pen, png, svg};
 use crate::fault::Fault;
 use crate::flight::Verdict;
@@ -46,23 +47,10 @@ const LAYERS: f64 = 0.5;
 const DARKEST: f64 = 140.0;
 const LIGHT: f64 = 110.0;
 
-pub(super) const WAY: Colour = [25, 70, 160];
-const AREA: Colour = [90, 20, 110];
-const KEEP_OUT: Colour = [190, 15, 40];
-/// From the middle of a leg to the tip of its arrow.
-const ARROW: f64 = 5.0;
-/// A leg that is shorter has none.
-const SHORTEST_WITH_ARROW: f64 = 26.0;
 /// From the middle of a photo's mark to a name.
 const MARK: f64 = 5.0;
 /// Fonts of viewers are wider than ours by no more.
 const WIDER: f64 = 1.06;
-/// Half the width of the mark of the take-off.
-pub(super) const TAKE_OFF: f64 = 6.0;
-
-/// The ways of batteries are told apart by these, in turn.
-pub(super) const DASHES: [Dash; 4] = [Dash::Solid, Dash::Long, Dash::Short, Dash::DashDot];
-
 /// The map as a document of SVG.
 ///
 /// # Errors
@@ -234,37 +222,6 @@ fn level(way: &Way) -> Vec<DVec2> {
     places.push(take_off);
     places.dedup();
     places
-}
-
-pub(super) fn way_line(places: &[[f64; 2]], dash: Dash, pen: &mut Pen) {
-    pen.line(places, [255; 3], 3.4, Dash::Solid);
-    pen.line(places, WAY, 1.4, dash);
-    for leg in places.windows(2) {
-        let [from, to] = [leg[0], leg[1]].map(DVec2::from);
-        let long = from.distance(to);
-        if long < SHORTEST_WITH_ARROW {
-            continue;
-        }
-        let along = (to - from) / long * ARROW;
-        let (middle, aside) = ((from + to) / 2.0, along.perp() * 0.7);
-        let corners = [
-            middle + along,
-            middle - along + aside,
-            middle - along - aside,
-        ];
-        pen.area(&corners.map(|corner| corner.to_array()), WAY, 1.0);
-    }
-}
-
-pub(super) fn area_line(points: &[[f64; 2]], pen: &mut Pen) {
-    pen.line(points, AREA, 1.8, Dash::DashDot);
-}
-
-/// An area that is not flown over.
-pub(super) fn keep_out_area(corners: &[[f64; 2]], pen: &mut Pen) {
-    pen.area(corners, KEEP_OUT, 0.25);
-    let around: Vec<[f64; 2]> = corners.iter().chain(corners.first()).copied().collect();
-    pen.line(&around, KEEP_OUT, 2.4, Dash::Solid);
 }
 
 /// The photos with what they show on the surface, and the refused ones as places without footprint or camera.

@@ -16,6 +16,7 @@
 mod legend;
 mod map;
 mod numbers;
+mod signs;
 #[cfg(test)]
 mod tests;
 mod words;

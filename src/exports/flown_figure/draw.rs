@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::FlownFigure;
 use super::names::{NamesRoom, WIDER};
+use super::style::{INK, MARK, NAME};
 use super::view::{AZIMUTH, ELEVATION, View};
 use crate::drawing::{Anchor, Colour, Dash, Marker, Pen, Shape, png};
 use crate::flown_report::flown_summary;
@@ -23,17 +24,14 @@ const HIGHEST: f64 = 520.0;
 const LOWEST: f64 = 170.0;
 const TITLE: f64 = 21.0;
 const TEXT: f64 = 14.0;
-pub(super) const NAME: f64 = 12.0;
 const ROW: f64 = 19.0;
 
-pub(super) const INK: Colour = [34; 3];
 const SOFT: Colour = [150; 3];
 const FLOOR: Colour = [235, 238, 241];
 /// Okabe and Ito's, apart in grey, too.
 const PLANNED: Colour = [0, 114, 178];
 const FLOWN: Colour = [213, 94, 0];
 const UNPLANNED: Colour = [0, 158, 115];
-pub(super) const MARK: f64 = 3.8;
 
 /// The shapes, and the figure's width and height.
 pub(super) fn draw(figure: &FlownFigure<'_>) -> (Vec<Shape>, [f64; 2]) {

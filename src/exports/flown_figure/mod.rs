@@ -16,6 +16,7 @@
 mod draw;
 mod names;
 mod page;
+mod style;
 #[cfg(test)]
 mod tests;
 mod view;

@@ -1,6 +1,6 @@
 //! Names beside marks, where they have room: none over another, or over the mark of another.
 
-use super::draw::{INK, MARK, NAME};
+use super::style::{INK, MARK, NAME};
 use crate::drawing::{Anchor, Pen, png};
 use crate::plan::clip::Box2;
 use crate::plan::photos::{overlap, shortened};

@@ -68,6 +68,13 @@ pub enum Replace {
     Anything,
 }
 
+/// The flight that a folder has an export of, where it is another one than that of `name` in `file`.
+pub fn other_flight_in(folder: &Path, name: &str, file: &Path) -> Option<String> {
+    let found = flight_of(folder)?;
+    let own = FlightOfExport::new(name, file, folder);
+    (!found.is(&own)).then(|| found.in_words())
+}
+
 /// The flight that the list in a folder is of, if it has one that says so.
 pub(super) fn flight_of(folder: &Path) -> Option<FlightOfExport> {
     let bytes = fs::read(folder.join(LIST)).ok()?;

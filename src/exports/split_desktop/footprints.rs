@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::ExportRequest;
 use super::kml;
+use super::photo_footprint::PhotoFootprint;
 use crate::fault::Fault;
 use crate::map_places::{MapPlaces, closed_ring};
 use crate::scale::{FootprintPoint, ScaleEstimate};
@@ -15,18 +16,6 @@ use crate::{PhotoLine, ScaleReport};
 pub(super) struct Footprints<'a> {
     request: &'a ExportRequest<'a>,
     places: MapPlaces,
-}
-
-/// One photo's footprint.
-pub(super) struct PhotoFootprint<'a> {
-    pub line: PhotoLine<'a>,
-    /// One ring, closed, counterclockwise seen from above; empty where there is none. Longitude and
-    /// latitude, or x, y, z.
-    pub ring: Vec<Vec<f64>>,
-    /// Whether every point of the outline has a place.
-    pub is_complete: bool,
-    /// How many points of the outline are not on the surface.
-    pub off_surface: usize,
 }
 
 impl<'a> Footprints<'a> {

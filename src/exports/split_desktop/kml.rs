@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use super::footprints::PhotoFootprint;
+use super::photo_footprint::PhotoFootprint;
 use crate::ScaleReport;
 use crate::flight::Verdict;
 use crate::markup::escaped;

@@ -24,6 +24,8 @@ mod folder;
 mod footprints;
 mod kml;
 mod objects;
+mod photo_footprint;
+mod photo_names;
 mod pictures;
 mod plan;
 mod rectified;
@@ -38,13 +40,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 pub use folder::Replace;
-pub use whose::other_flight_in;
+pub use folder::other_flight_in;
 
 use self::folder::ExportFolder;
 use self::footprints::Footprints;
 use self::objects::PhotoObject;
+use self::photo_names::PhotoNames;
 use self::pictures::PictureSource;
-use self::plan::PhotoNames;
 use self::whose::FlightOfExport;
 use crate::fault::Fault;
 use crate::files::{FileError, Inputs, sha256_of_file};

@@ -2,6 +2,7 @@
 
 use super::ExportRequest;
 use super::objects::PhotoObject;
+use super::photo_names::PhotoNames;
 use super::rectified;
 use crate::flight::Outcome;
 use crate::photo_file_names::file_names;
@@ -11,30 +12,6 @@ pub(super) const CSV: &str = "scales.csv";
 pub(super) const SHEET: &str = "scales.html";
 pub(super) const GEOJSON: &str = "footprints.geojson";
 pub(super) const KML: &str = "footprints.kml";
-
-/// The files of one photo below the exported folder, with slashes.
-#[derive(Debug, Clone)]
-pub(super) struct PhotoNames {
-    pub photo: String,
-    pub overlay: String,
-    pub thumbnail: String,
-    /// Where something is left out of the analysis.
-    pub mask: Option<String>,
-    /// Where it is asked for: the photo seen squarely, and its world file.
-    pub rectified: Option<[String; 2]>,
-}
-
-impl PhotoNames {
-    pub(super) fn all(&self) -> Vec<String> {
-        let pictures = [&self.photo, &self.overlay, &self.thumbnail].into_iter();
-        let rectified = self.rectified.iter().flatten();
-        pictures
-            .chain(&self.mask)
-            .chain(rectified)
-            .cloned()
-            .collect()
-    }
-}
 
 /// For each photo of the flight the names of its pictures, or why it has none. `objects` are those of
 /// each photo.

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::ExportRequest;
 use super::objects::PhotoObject;
-use super::plan::PhotoNames;
+use super::photo_names::PhotoNames;
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::picture;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::objects::PhotoObject;
-use super::plan::PhotoNames;
+use super::photo_names::PhotoNames;
 use super::{CheckedInput, ExportRequest};
 use crate::flight::{Verdict, compare_names};
 use crate::markup::escaped;

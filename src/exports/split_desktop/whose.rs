@@ -5,8 +5,6 @@ use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::folder;
-
 /// The flight that an export is of.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct FlightOfExport {
@@ -40,13 +38,6 @@ impl FlightOfExport {
     pub(super) fn in_words(&self) -> String {
         format!("'{}' ({})", self.name, self.file.display())
     }
-}
-
-/// The flight that a folder has an export of, where it is another one than that of `name` in `file`.
-pub fn other_flight_in(folder: &Path, name: &str, file: &Path) -> Option<String> {
-    let found = folder::flight_of(folder)?;
-    let own = FlightOfExport::new(name, file, folder);
-    (!found.is(&own)).then(|| found.in_words())
 }
 
 /// A path from the root with its links followed, as far as it exists.

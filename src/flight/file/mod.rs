@@ -2,7 +2,6 @@
 
 mod camera_entry;
 mod check;
-mod decisions_text;
 mod known_keys;
 mod plan_entry;
 mod poses_flight;

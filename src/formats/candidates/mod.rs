@@ -10,10 +10,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use crate::FileError;
-use crate::detect::DETECTED_BY;
 use crate::fault::Fault;
 use crate::jobs::Progress;
-use crate::packages::{self, LOOKED_AT, Package, colmap, odm, opensfm, pix4d};
+use crate::packages::{self, DETECTED_BY, LOOKED_AT, Package, colmap, odm, opensfm, pix4d};
 use crate::photos::photos_below;
 
 /// How many folders below one are looked into, over both levels.
@@ -57,40 +56,8 @@ impl Candidate {
     }
 }
 
-/// The reconstructions that `path` may stand for, with their photos' counts: those of a folder itself,
-/// else those in its folders, one and two levels down. A single one is what opening `path` opens,
-/// where it lies in the folder itself. Empty where there is none.
-///
-/// What one of them was made of (OpenSfM's files in an OpenDroneMap project) is not listed beside it.
-/// Reads at most some hundred entries of each folder, and counts photos only where that is quick.
-pub fn candidates(path: &Path) -> Vec<Candidate> {
-    if !path.is_dir() {
-        let found = crate::detect(path).ok();
-        return counted(found.and_then(of_kind).into_iter().collect());
-    }
-    let flight = path.join("flight.toml");
-    if flight.is_file() {
-        return counted(vec![(None, flight)]);
-    }
-    let found = Contents::of(path).meant;
-    let found = if found.is_empty() {
-        below(path)
-    } else {
-        found.into_iter().map(|(p, path)| (Some(p), path)).collect()
-    };
-    counted(found)
-}
-
-fn of_kind(kind: crate::Kind) -> Option<Found> {
-    match kind {
-        crate::Kind::Flight(path) => Some((None, path)),
-        crate::Kind::Reconstruction(package, path) => Some((Some(package), path)),
-        _ => None,
-    }
-}
-
 /// A candidate before its photos are counted.
-type Found = (Option<Package>, PathBuf);
+pub(crate) type Found = (Option<Package>, PathBuf);
 
 /// What lies in a folder.
 #[derive(Debug, Default, PartialEq)]
@@ -235,7 +202,7 @@ fn is_made_into(one: &(Package, PathBuf), whole: &(Package, PathBuf)) -> bool {
 
 /// The flights and reconstructions in the folders of a folder, else in theirs. Folders of mere photos
 /// are listed only where there is nothing else.
-fn below(folder: &Path) -> Vec<Found> {
+pub(crate) fn below(folder: &Path) -> Vec<Found> {
     let mut found = Vec::new();
     let mut photos = Vec::new();
     let mut level = vec![folder.to_owned()];
@@ -273,7 +240,7 @@ fn below(folder: &Path) -> Vec<Found> {
 }
 
 /// Counts the photos of the first of them.
-fn counted(found: Vec<Found>) -> Vec<Candidate> {
+pub(crate) fn counted(found: Vec<Found>) -> Vec<Candidate> {
     let mut left = COUNTED_BYTES_IN_ALL;
     found
         .into_iter()

@@ -138,3 +138,11 @@ fn text_in(folder: &Path, name: &str) -> Result<Option<String>, FileError> {
     let text = text_from_bytes(&bytes).map_err(|fault| FileError::new(&path, fault))?;
     Ok(Some(text.to_owned()))
 }
+
+/// A mission where a flight is needed.
+pub fn no_flight_but_mission() -> Fault {
+    Fault::new(
+        "it holds a drone's mission, not a flight",
+        "say what it says with 'fragscale mission FILE'; with the flight that came of it 'fragscale flown FLIGHT --mission FILE', or drop it on the window where that flight is open",
+    )
+}

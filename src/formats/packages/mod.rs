@@ -35,6 +35,9 @@ use crate::photos::photos_below;
 /// How many entries of a folder are looked at.
 pub(crate) const LOOKED_AT: usize = 200;
 
+/// How many bytes of a file are looked at to tell its kind.
+pub(crate) const DETECTED_BY: usize = 4096;
+
 /// What is known of a package.
 struct Row {
     /// Its name, for lists.

@@ -17,6 +17,7 @@ pub use method_curve::{MeanPoint, MethodCurve};
 pub use percentiles::{PercentileShift, SCALE_WARNING, Shift};
 pub use residuals::{PERCENT_ERROR, PercentError};
 
+use super::distribution::as_typed;
 use super::{DistributionSet, Model, PERCENTILES, SizeDistribution};
 use crate::fault::Fault;
 use crate::units::LengthUnit;
@@ -328,12 +329,6 @@ fn notes_of_reference(reference: &MethodCurve, span: Span, unit: LengthUnit) -> 
         ));
     }
     notes
-}
-
-/// A measured size as it was typed: units that were converted left 2.2399999999999998 of 2.24.
-pub(crate) fn as_typed(size: f64) -> String {
-    let near: Option<f64> = format!("{size:.5e}").parse().ok();
-    near.unwrap_or(size).to_string()
 }
 
 /// A size as a sentence says it: three digits.

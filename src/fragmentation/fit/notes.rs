@@ -4,7 +4,7 @@ use super::coordinates::{Coordinates, Optimum};
 use super::family::Family;
 use super::points::Points;
 use super::{FitOptions, FittedParameter};
-use crate::comparison::as_typed;
+use crate::distribution::as_typed;
 use crate::{Curve, PERCENTILES};
 
 /// Other optima with a sum of at most this many times the least are told.

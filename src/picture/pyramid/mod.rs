@@ -3,9 +3,12 @@
 //! Memory: three bytes a pixel for the photo and one for all its halvings, so 400 MB for 100 megapixels;
 //! tiles are cut, and freed from the lens, one by one when somebody looks at them.
 
+pub(super) mod part;
+
 use glam::DVec2;
 use image::RgbImage;
 
+use self::part::Part;
 use super::reduce::reduced_to;
 use super::undistort::undistorted_part;
 use crate::camera::Camera;
@@ -16,39 +19,6 @@ pub const TILE: u32 = 510;
 /// What a tile has of its neighbours at each side, pixels: so that nothing is seen of the seam between two
 /// that are drawn enlarged.
 const MARGIN: u32 = 1;
-
-/// A rectangle of whole pixels.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Part {
-    /// Pixels left of it.
-    pub x: u32,
-    /// Pixels above it.
-    pub y: u32,
-    /// In pixels.
-    pub width: u32,
-    /// In pixels.
-    pub height: u32,
-}
-
-impl Part {
-    /// What of it lies in a picture of this size.
-    #[must_use]
-    pub fn within(self, (width, height): (u32, u32)) -> Self {
-        let (x, y) = (self.x.min(width), self.y.min(height));
-        Self {
-            x,
-            y,
-            width: self.width.min(width - x),
-            height: self.height.min(height - y),
-        }
-    }
-
-    /// The pixels of a picture that it lies in.
-    pub(super) fn of(self, picture: &RgbImage) -> RgbImage {
-        let part = self.within(picture.dimensions());
-        image::imageops::crop_imm(picture, part.x, part.y, part.width, part.height).to_image()
-    }
-}
 
 /// One tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

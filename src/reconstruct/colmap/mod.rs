@@ -17,6 +17,7 @@ mod called;
 mod log;
 mod options;
 mod program;
+mod setting;
 #[cfg(test)]
 #[cfg(unix)]
 mod tests;
@@ -29,8 +30,9 @@ use cumulus3d_core::Reconstruction;
 use rayon::prelude::*;
 
 use self::called::Called;
-use self::options::{Options, Setting};
+use self::options::Options;
 use self::program::Program;
+use self::setting::Setting;
 use crate::adjusted::{guarded, in_order, read, too_little_in_common};
 use crate::camera::Camera;
 use crate::engine::{Engine, Found, Workplace};

@@ -15,7 +15,7 @@ use process_wrap::std::JobObject;
 use process_wrap::std::ProcessGroup;
 use process_wrap::std::{ChildWrapper, CommandWrap};
 
-use super::options::Setting;
+use super::setting::Setting;
 use crate::fault::Fault;
 use crate::jobs::Progress;
 

@@ -11,7 +11,7 @@ use super::tile::Tile;
 use crate::device::gpu::Gpu;
 use crate::device::pipeline::Shader;
 use crate::device::pipeline::{Recipe, module, pipeline};
-use crate::renderer::Most;
+use crate::renderer::part::Most;
 use crate::scene::{CloudGeometry, CloudTile, Extent, Vertex};
 use crate::streamed::{Looking, Present, StreamSource, Streamed};
 

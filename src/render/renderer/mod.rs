@@ -2,7 +2,7 @@
 
 mod aside;
 mod beside;
-mod part;
+pub(crate) mod part;
 mod pass;
 mod passes;
 mod sight;
@@ -39,8 +39,7 @@ use crate::surface_buffers::SurfaceBuffers;
 use crate::view::View;
 pub use aside::Aside;
 pub use beside::BesideCloud;
-pub(crate) use part::Most;
-use part::{Part, pair};
+use part::{Most, Part, pair};
 use targets::Targets;
 
 /// More texels than this are too many to draw again and again: then a pixel has one sample.

@@ -23,7 +23,7 @@ use glam::DVec3;
 use crate::device::gpu::Gpu;
 use crate::geometry::{Bounds, LevelBox, LocalFrame};
 use crate::primitives::tile::Tile;
-use crate::renderer::Most;
+use crate::renderer::part::Most;
 use crate::scene::{Extent, elevation, narrow};
 use crate::surface::{LevelNode, Levels};
 use loader::Loader;

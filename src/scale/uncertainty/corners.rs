@@ -8,8 +8,9 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
+use super::LEAST_POINTS;
 use super::draws::{Draws, deviation, interval_of};
-use super::surface_error::{DepthError, LEAST_POINTS, root_mean_square, tan_of_incidence};
+use super::surface_error::{DepthError, root_mean_square, tan_of_incidence};
 use super::unseen::Unseen;
 use super::{Interval, UncertainPhoto};
 use crate::geometry::Ray;

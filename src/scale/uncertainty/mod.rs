@@ -31,6 +31,9 @@ use super::field::ScaleField;
 use super::{EdgeScales, FittedScale, PhotoScale, ScalePair, StatedErrors};
 use crate::surface::Surface;
 
+/// With fewer points nothing is known of a photo's surface.
+const LEAST_POINTS: usize = 30;
+
 /// How sure one scale is, pixels per world unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {

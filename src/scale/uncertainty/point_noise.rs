@@ -23,7 +23,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::surface_error::LEAST_POINTS;
+use super::LEAST_POINTS;
 
 /// What clouds of `sample` have of themselves, at most, a share of the depth.
 const USUAL: f64 = 0.0045;

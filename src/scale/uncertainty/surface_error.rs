@@ -11,14 +11,12 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
+use super::LEAST_POINTS;
 use super::point_noise::{MOST_TRIANGLES, PointNoise};
 use crate::geometry::Bounds;
 use crate::scale::field::ScaleField;
 use crate::scale::pyramid::Pyramid;
 use crate::surface::{LeftOut, Patch, Surface};
-
-/// With fewer points nothing is known of a photo's surface.
-pub(super) const LEAST_POINTS: usize = 30;
 
 /// Of more points in a photo only so many tell of it.
 pub(super) const MOST_POINTS: usize = 4000;

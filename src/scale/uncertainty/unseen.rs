@@ -47,10 +47,11 @@
 //! 93 to 97 % of all five, in intervals that are 1.0 (muckpile 6202) to 1.5 times (bench 6102) as wide. Chosen on bench 6101, muckpile 6201
 //! and stockpile 6301.
 
+use super::LEAST_POINTS;
 use super::draws::Draws;
 use super::holes::Line;
 use super::surface_error::{
-    DepthError, DepthErrors, LEAST_POINTS, SHIFTED, mean, root_mean_square, without_flying,
+    DepthError, DepthErrors, SHIFTED, mean, root_mean_square, without_flying,
 };
 use crate::scale::FittedScale;
 use crate::scale::field::ScaleField;
@@ -195,7 +196,7 @@ mod tests {
     use crate::scale::Draws;
     use crate::scale::ImageKind;
     use crate::scale::field::FieldGrid;
-    use crate::scale::uncertainty::surface_error::LEAST_POINTS;
+    use crate::scale::uncertainty::LEAST_POINTS;
     use crate::scale::uncertainty::tests::{camera, nadir};
     use crate::surface::{Cloud, Surface};
 

@@ -33,7 +33,8 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 
 use super::hull::hull_of_points;
-use super::sites::{BLOCK, Cells, Grid, Sites, site_place};
+use super::sites::place::site_place;
+use super::sites::{BLOCK, Cells, Grid, Sites};
 use super::{Shape, Surface, SurfaceError, SurfaceOptions, Whole, magnitude_of};
 use crate::geometry::{Bounds, LocalFrame};
 

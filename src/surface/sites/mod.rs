@@ -8,6 +8,7 @@
 
 mod grid;
 mod held;
+pub(super) mod place;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -17,6 +18,7 @@ use glam::{DVec2, DVec3};
 pub(super) use self::grid::{Grid, sample_stride};
 pub use self::held::Wanted;
 pub(super) use self::held::{BLOCK, Held};
+use self::place::site_place;
 use super::SurfaceError;
 
 use super::hull::{convex_hull, is_line};
@@ -456,23 +458,6 @@ impl Sorted {
             colors,
             starts,
         })
-    }
-}
-
-/// A point as a site: spade refuses coordinates under 2^-142 that are not 0; and -0 must equal 0.
-pub(super) fn site_place(point: DVec3) -> DVec3 {
-    DVec3::new(
-        spade_coordinate(point.x),
-        spade_coordinate(point.y),
-        point.z,
-    )
-}
-
-fn spade_coordinate(x: f64) -> f64 {
-    if x.abs() < spade::MIN_ALLOWED_VALUE {
-        0.0
-    } else {
-        x
     }
 }
 

@@ -26,8 +26,8 @@ use self::reach::Reach;
 use super::SurfaceError;
 use super::left_out::Kept;
 use super::made_once::MadeOnce;
-use super::patches::{TriangleBlock, sort_into_blocks};
 use super::sites::{BLOCK, Cells, Sites};
+use super::triangle_blocks::{TriangleBlock, sort_into_blocks};
 use crate::geometry::Bounds;
 
 /// Cells along a tile's sides; about 8000 sites. Smaller tiles make more of their margins, larger

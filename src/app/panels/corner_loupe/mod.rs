@@ -3,7 +3,7 @@
 use egui::{Color32, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use glam::{DVec2, DVec3};
 
-use super::inspector::{CORNER_ROOM, draw_corner, nearest_inside};
+use super::corner_marks::{CORNER_ROOM, draw_corner, nearest_inside};
 use crate::command::Command;
 use crate::corner_loupe::{CROP, CornerTriangle};
 use crate::flight::{Doubt, PhotoReview};

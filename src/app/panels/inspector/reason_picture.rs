@@ -3,10 +3,11 @@
 use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use glam::DVec2;
 
-use super::{Inspector, PhotoPlace, draw_bar, draw_corner, message, nearest_inside, tint};
+use super::{Inspector, PhotoPlace, draw_bar, message, tint};
 use crate::flight::{OnPhoto, PhotoReview};
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
+use crate::panels::corner_marks::{draw_corner, nearest_inside};
 use crate::picture::scale_bars;
 use crate::scale::Corner;
 use crate::state::State;

@@ -11,7 +11,7 @@ use super::corner_loupe;
 use super::fragments::OnPhoto;
 use super::inspector::tint::{self, Tint};
 use super::inspector::traced_photo::{self, Dragged, PhotoPlace};
-use super::inspector::{CORNER_ROOM, draw_bar, draw_corner, message, nearest_inside, waiting};
+use super::inspector::{draw_bar, message, waiting};
 use super::linked;
 use crate::command::Command;
 use crate::flight::PhotoReview;

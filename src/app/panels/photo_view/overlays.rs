@@ -4,10 +4,11 @@
 use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, vec2};
 use glam::DVec2;
 
-use super::{CORNER_ROOM, PhotoPlace, Tint, draw_bar, draw_corner, nearest_inside};
+use super::{PhotoPlace, Tint, draw_bar};
 use crate::flight::PhotoReview;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::tint::PhotoTint;
+use crate::panels::corner_marks::{CORNER_ROOM, draw_corner, nearest_inside};
 use crate::picture::scale_bars;
 use crate::scale::{Corner, CornerOutcome, ImageKind};
 use crate::state::State;

@@ -1,8 +1,10 @@
 //! Changing the text of a flight.toml, so that its comments and its layout stay.
 
+mod decisions;
+
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, Value};
 
-use super::decisions_text::set_decisions;
+use self::decisions::set_decisions;
 use super::plan_entry::set_plan;
 use super::uncertainty_entry::Axes;
 use super::{FlightFile, FlightSettings, Placed, ScaleObject, unit_word, up_word};
@@ -322,7 +324,7 @@ fn set_scale_objects(
     Ok(())
 }
 
-pub(super) fn put_in(table: &mut Table, key: &str, value: impl Into<Value>) {
+fn put_in(table: &mut Table, key: &str, value: impl Into<Value>) {
     put(table.entry(key).or_insert(Item::None), value.into());
 }
 

@@ -29,15 +29,13 @@ use crate::jobs::Progress;
 use crate::surface::CloudFacts;
 use crate::text::json::{Object, parse};
 
-pub(super) mod pieces;
-
 /// The name of the file that stands for the whole.
 pub(crate) const HEADER: &str = "ept.json";
 
 /// The most tiles that are read: entwine puts some 100 000 points into each.
 const MOST_TILES: usize = 1_000_000;
 
-const REMEDY: &str = "copy the whole folder, or export the cloud as LAZ";
+pub(super) const REMEDY: &str = "copy the whole folder, or export the cloud as LAZ";
 
 /// The data type that is read.
 const LASZIP: &str = "laszip";
@@ -62,22 +60,22 @@ pub(crate) fn refusal(header: &[u8]) -> Option<String> {
 }
 
 #[derive(Deserialize)]
-struct Header {
+pub(super) struct Header {
     #[serde(rename = "dataType")]
     data_type: String,
     #[serde(rename = "hierarchyType")]
     hierarchy_type: Option<String>,
     points: Option<u64>,
-    srs: Option<Srs>,
+    pub(super) srs: Option<Srs>,
     /// The cube of the octree: the lowest and the highest corner.
-    bounds: Option<[f64; 6]>,
+    pub(super) bounds: Option<[f64; 6]>,
     /// Around its points.
     #[serde(rename = "boundsConforming")]
-    conforming: Option<[f64; 6]>,
+    pub(super) conforming: Option<[f64; 6]>,
 }
 
 #[derive(Deserialize)]
-struct Srs {
+pub(super) struct Srs {
     authority: Option<String>,
     horizontal: Option<Code>,
     vertical: Option<Code>,
@@ -103,7 +101,7 @@ impl Code {
 
 impl Srs {
     /// "EPSG:n", "EPSG:n+m" with the heights', or WKT.
-    fn crs(&self) -> Option<String> {
+    pub(super) fn crs(&self) -> Option<String> {
         let authority = self.authority.as_deref().unwrap_or("EPSG");
         let number = |code: &Option<Code>| code.as_ref().and_then(Code::number);
         if let Some(horizontal) = number(&self.horizontal)
@@ -120,14 +118,14 @@ impl Srs {
 
 impl Header {
     /// What is to be said where the tiles hold another number of points.
-    fn warning(&self, found: u64) -> Option<String> {
+    pub(super) fn warning(&self, found: u64) -> Option<String> {
         let points = self.points.filter(|&points| points != found)?;
         Some(format!(
             "{HEADER} promises {points} points, its tiles hold {found}"
         ))
     }
 
-    fn check(&self) -> Result<(), Fault> {
+    pub(super) fn check(&self) -> Result<(), Fault> {
         if self.data_type != LASZIP {
             let what = format!(
                 "its tiles are of the data type \"{}\", and only \"{LASZIP}\" is read",
@@ -185,7 +183,7 @@ pub(crate) fn read(
 }
 
 /// The points of a tile.
-fn read_tile(
+pub(super) fn read_tile(
     key: &str,
     beside: &dyn Fn(&str) -> Result<Vec<u8>, Fault>,
 ) -> Result<CloudFile, Fault> {
@@ -196,7 +194,7 @@ fn read_tile(
     las::read(Cursor::new(bytes), &of_tile).map_err(|fault| of_file(&name, fault))
 }
 
-fn box_of([x, y, z, to_x, to_y, to_z]: [f64; 6]) -> Bounds {
+pub(super) fn box_of([x, y, z, to_x, to_y, to_z]: [f64; 6]) -> Bounds {
     Bounds {
         min: DVec3::new(x, y, z),
         max: DVec3::new(to_x, to_y, to_z),
@@ -226,14 +224,14 @@ fn add(whole: &mut CloudFile, part: CloudFile) {
 
 /// A tile with points.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-struct Tile {
+pub(super) struct Tile {
     level: u32,
-    key: String,
-    count: u64,
+    pub(super) key: String,
+    pub(super) count: u64,
 }
 
 /// All tiles with points, coarse ones first.
-fn tiles(beside: &dyn Fn(&str) -> Result<Vec<u8>, Fault>) -> Result<Vec<Tile>, Fault> {
+pub(super) fn tiles(beside: &dyn Fn(&str) -> Result<Vec<u8>, Fault>) -> Result<Vec<Tile>, Fault> {
     let root = "0-0-0-0".to_owned();
     let mut seen = HashSet::from([root.clone()]);
     let mut open = vec![root];
@@ -271,7 +269,7 @@ fn level(key: &str) -> Option<u32> {
     numbers(key).map(|[level, ..]| level)
 }
 
-fn numbers(key: &str) -> Option<[u32; 4]> {
+pub(super) fn numbers(key: &str) -> Option<[u32; 4]> {
     let numbers: Option<Vec<u32>> = key
         .split('-')
         .map(|number| {
@@ -283,7 +281,7 @@ fn numbers(key: &str) -> Option<[u32; 4]> {
 }
 
 /// A fault of one of its files.
-fn of_file(name: &str, fault: Fault) -> Fault {
+pub(super) fn of_file(name: &str, fault: Fault) -> Fault {
     let place = fault
         .line
         .map(|line| format!(":{line}"))

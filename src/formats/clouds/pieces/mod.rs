@@ -6,7 +6,7 @@
 //! layout   how records are stored
 //! records  LAS: runs of records; LAZ: its compressed chunks; where each lies is known once it was read
 //! copc     COPC: the nodes of its octree, each with the cube that it lies in
-//! ept      EPT (`ept::pieces`): its tiles, each a file
+//! tiles    EPT: its tiles, each a file
 //! ```
 //!
 //! Points alone are read, no colours: coordinates are those that `las` decodes, to the last bit.
@@ -15,6 +15,7 @@ pub(crate) mod copc;
 mod layout;
 pub(super) mod piece;
 mod records;
+mod tiles;
 
 use std::path::Path;
 
@@ -23,8 +24,8 @@ use glam::DVec3;
 pub use self::piece::CloudPiece;
 use self::piece::Place;
 use self::records::Records;
+use self::tiles::Tiles;
 use crate::clouds::cloud_file::{CloudFile, first_not_finite};
-use crate::clouds::ept::pieces::{self as tiles, Tiles};
 use crate::detect::{CloudFormat, Kind, detect};
 use crate::fault::Fault;
 use crate::files::FileError;

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::names::{SizeText, SizeUnit};
-use super::retained::OnSieves;
+use super::raw::{RawCurve, RawPoint};
 use crate::fault::Fault;
 use crate::fragmentation::{DistributionSet, LabelledDistribution, Labels, SizeDistribution};
 use crate::tables::table::NumberRepairs;
@@ -12,28 +12,6 @@ use crate::units::LengthUnit;
 
 /// Percentage points that rounding explains: percents are often written to one decimal.
 const ROUNDING: f64 = 0.05 + 1e-9;
-
-/// A point as the table gives it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct RawPoint {
-    pub(super) line: u64,
-    pub(super) size: SizeText,
-    pub(super) percent: f64,
-    /// Whether a percent sign stands behind it.
-    pub(super) percent_sign: bool,
-}
-
-/// A curve as the table gives it.
-#[derive(Debug, Clone)]
-pub(super) struct RawCurve {
-    pub(super) labels: Labels,
-    pub(super) weight: Option<f64>,
-    /// Where it begins.
-    pub(super) line: u64,
-    pub(super) points: Vec<RawPoint>,
-    /// Where its points are of what stays on sieves, what else is said of that.
-    pub(super) sieves: Option<OnSieves>,
-}
 
 /// How often something was mended, and where first.
 #[derive(Debug, Clone, Copy, Default)]

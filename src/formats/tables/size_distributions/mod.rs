@@ -32,6 +32,7 @@ mod curves;
 mod layout;
 mod names;
 mod point_weights;
+mod raw;
 mod read;
 mod retained;
 #[cfg(test)]

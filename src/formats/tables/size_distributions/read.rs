@@ -3,13 +3,14 @@
 use std::collections::{HashMap, HashSet};
 
 use super::DistributionColumns;
-use super::curves::{RawCurve, RawPoint, Repairs, SizeReading, finish};
+use super::curves::{Repairs, SizeReading, finish};
 use super::layout::{LabelColumns, Layout, PercentColumn};
 use super::names::{
     Role, SizeText, SizeUnit, holds_sieve_numbers, is_amount, role, sample_of, sieve_mm,
     size_trouble, weight_factor,
 };
-use super::retained::{OnSieves, is_pan, is_result, is_total, is_washed};
+use super::raw::{OnSieves, RawCurve, RawPoint};
+use super::retained::{is_pan, is_result, is_total, is_washed};
 use crate::fault::Fault;
 use crate::fragmentation::{DistributionSet, Labels};
 use crate::tables::table::{Row, Table};

@@ -10,8 +10,8 @@
 //! - "% retained" that says neither is of each sieve where all and the pan are 100 %, and cumulative where the pan's is 100 %, or
 //!   where it never falls towards finer sieves and all are more than 100 %. Else it is refused.
 
-use super::curves::{RawCurve, RawPoint};
 use super::names::{RetainedName, SizeText};
+use super::raw::{OnSieves, RawCurve, RawPoint};
 use crate::fault::Fault;
 
 /// How far a sum of percents may be off 100: each is rounded to a tenth, and there are ten sieves.
@@ -60,18 +60,6 @@ pub(super) fn is_result(cell: &str) -> bool {
 /// Whether it is what was washed out before sieving: it passes all sieves, as what is in the pan (ASTM C117, C136).
 pub(super) fn is_washed(cell: &str) -> bool {
     cell.to_lowercase().contains("wash")
-}
-
-/// What stays on sieves, beside the points of its curve.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct OnSieves {
-    what: RetainedName,
-    /// In the line of the pan.
-    pub(super) pan: Option<f64>,
-    /// In the line of what was washed out.
-    pub(super) washed: Option<f64>,
-    /// In the line of the total.
-    pub(super) total: Option<f64>,
 }
 
 /// What the numbers are, once that is known.

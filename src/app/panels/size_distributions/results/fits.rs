@@ -5,7 +5,7 @@ use crate::command::Command;
 use crate::fragmentation::{Labels, PERCENTILES, Percentile};
 use crate::panels::size_distributions::table::{Table, fixed, number};
 use crate::size_distributions::Computed;
-use crate::size_distributions::computing::FittedCurve;
+use crate::size_distributions::fitted_curve::FittedCurve;
 
 /// Draws the tables.
 pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

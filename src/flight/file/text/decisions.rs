@@ -2,7 +2,7 @@
 
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table};
 
-use super::text::put_in;
+use super::put_in;
 use crate::fault::Fault;
 use crate::flight::Decision;
 

@@ -12,17 +12,14 @@ const TRIANGLES: usize = 64;
 
 /// A run of a patch's triangles.
 #[derive(Debug, Clone)]
-pub(in crate::surface) struct TriangleBlock {
+pub(super) struct TriangleBlock {
     pub(super) triangles: Range<usize>,
     /// Around them.
     pub(super) bounds: Bounds,
 }
 
 /// Sorts triangles into blocks by the squares that their first corners lie in.
-pub(in crate::surface) fn sort_into_blocks(
-    triangles: &mut [[u32; 3]],
-    points: &[DVec3],
-) -> Vec<TriangleBlock> {
+pub(super) fn sort_into_blocks(triangles: &mut [[u32; 3]], points: &[DVec3]) -> Vec<TriangleBlock> {
     let first = |triangle: &[u32; 3]| points[triangle[0] as usize].truncate();
     let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for place in triangles.iter().map(first) {

@@ -2,17 +2,13 @@
 //! those in some part of the world, and not the rest. A cloud is triangulated tile by tile; a mesh is
 //! cut into runs of faces as they stand in its file.
 
-mod triangle_blocks;
-
 use glam::DVec3;
 
-pub(super) use self::triangle_blocks::{TriangleBlock, sort_into_blocks};
-
-use self::triangle_blocks::blocks_of;
 use super::left_out::{Kept, LeftOut, leave_out_each};
 use super::made_once::MadeOnce;
 use super::mesh::Mesh;
 use super::tiles::Tiles;
+use super::triangle_blocks::{TriangleBlock, blocks_of};
 use super::{Shape, Surface, SurfaceError, longest_edge};
 use crate::geometry::{Bounds, LocalFrame};
 

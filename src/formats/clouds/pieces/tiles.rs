@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
-use super::{Header, REMEDY, Srs, box_of, numbers, of_file, read_tile, tiles};
+use super::piece::{CloudPiece, LEAST_SAMPLE, Place, sample_of};
+use super::{CloudPieces, Source};
 use crate::clouds::cloud_file::CloudFile;
+use crate::clouds::ept::{Header, REMEDY, Srs, box_of, numbers, of_file, read_tile, tiles};
 use crate::clouds::gltf::read_beside;
-use crate::clouds::pieces::piece::{CloudPiece, LEAST_SAMPLE, Place, sample_of};
-use crate::clouds::pieces::{CloudPieces, Source};
 use crate::fault::Fault;
 use crate::files::read_bytes;
 use crate::geometry::Bounds;
@@ -21,13 +21,13 @@ const ROUNDING: f64 = 1e-6;
 
 /// The tiles and where they are.
 #[derive(Debug)]
-pub(in crate::clouds) struct Tiles {
+pub(super) struct Tiles {
     path: PathBuf,
     keys: Vec<String>,
 }
 
 /// Opens it by the path of its `ept.json`.
-pub(in crate::clouds) fn open(path: &Path) -> Result<CloudPieces, Fault> {
+pub(super) fn open(path: &Path) -> Result<CloudPieces, Fault> {
     let header = read_bytes(path).map_err(|error| error.fault)?;
     let header: Header = parse(&header)?;
     header.check()?;
@@ -112,7 +112,7 @@ pub(in crate::clouds) fn open(path: &Path) -> Result<CloudPieces, Fault> {
 
 impl Tiles {
     /// The points of a tile.
-    pub(in crate::clouds) fn read(&self, piece: &CloudPiece) -> Result<Vec<DVec3>, Fault> {
+    pub(super) fn read(&self, piece: &CloudPiece) -> Result<Vec<DVec3>, Fault> {
         let number = usize::try_from(piece.place.start).unwrap_or(usize::MAX);
         let key = self.keys.get(number).map_or("", String::as_str);
         let beside = |name: &str| read_beside(&self.path, name);
