@@ -75,7 +75,7 @@ use command::Asking;
 use flight::Verdict;
 use frame_times::{FrameTimes, Phase};
 use open_flight::OpenFlight;
-use panels::{Inspector, PhotoPanel};
+use panels::{Inspector, PhotoPanel, Scrolled};
 use photo_view::Middle;
 use size_distributions::{DistributionCommand, Page, PasteForm, ResultTab};
 use state::{Leaving, Severity};
@@ -188,15 +188,17 @@ impl App {
     /// takes away.
     fn keep_keys_from_behind(&self, context: &egui::Context) {
         let asks = self.state.asking.is_some() || self.state.held_back.is_some();
-        if !asks || context.egui_wants_keyboard_input() {
+        if !asks || actions::keys_are_taken(context) {
             return;
         }
+        let focused = context.memory(|memory| memory.focused().is_some());
         context.input_mut(|input| {
             input.events.retain(|event| match event {
                 egui::Event::Text(_) => false,
                 egui::Event::Key { key, modifiers, .. } => {
                     modifiers.command
                         || matches!(key, egui::Key::Tab | egui::Key::Escape | egui::Key::F1)
+                        || focused && actions::IN_FOCUS.contains(key)
                 }
                 _ => true,
             });
@@ -252,6 +254,7 @@ impl eframe::App for App {
             egui::Panel::top("health").show(ui, |ui| panels::health(state, ui, out));
         }
         egui::Panel::bottom("status").show(ui, |ui| panels::status_bar(state, ui, out));
+        panels::spoken(state, ui);
         if state.preferences.log_open {
             egui::Panel::bottom("log")
                 .resizable(true)
@@ -400,7 +403,7 @@ fn overlays(state: &State, ui: &mut egui::Ui, place: egui::Rect, commands: &mut 
             .show(ui, |ui| {
                 // On a small screen it is higher than the viewport.
                 egui::ScrollArea::vertical()
-                    .show(ui, |ui| panels::layers_panel(state, ui, commands));
+                    .show_focused(ui, |ui| panels::layers_panel(state, ui, commands));
             });
     });
 }

@@ -10,7 +10,7 @@ use crate::clouds::ept;
 use crate::fault::Fault;
 use crate::files::{FileError, open_file, unreadable_folder};
 use crate::missions;
-use crate::packages::{self, Package, colmap, metashape, open3d};
+use crate::packages::{self, DETECTED_BY, Package, colmap, metashape, open3d};
 use crate::poses::trajectory::{self, TrajectoryFormat};
 use crate::poses::{poses_csv, poses_opk};
 use crate::tables::size_distributions;

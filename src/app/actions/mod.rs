@@ -153,6 +153,26 @@ pub fn all() -> impl Iterator<Item = Action> {
         .flatten()
 }
 
+/// What belongs to a button, a list or a slider that has the focus; other keys do not.
+pub(crate) const IN_FOCUS: [Key; 11] = [
+    Key::Enter,
+    Key::Space,
+    Key::Tab,
+    Key::Escape,
+    Key::ArrowUp,
+    Key::ArrowDown,
+    Key::ArrowLeft,
+    Key::ArrowRight,
+    Key::PageUp,
+    Key::PageDown,
+    Key::Delete,
+];
+
+/// Whether letters belong to a field that is typed into, or to an open menu.
+pub(crate) fn keys_are_taken(context: &egui::Context) -> bool {
+    context.text_edit_focused() || egui::Popup::is_any_open(context)
+}
+
 /// The commands of the shortcuts that were pressed in this frame. Keys without Ctrl belong to a text
 /// field while one has the focus.
 pub fn pressed(state: &State, context: &egui::Context) -> Vec<Command> {
@@ -160,7 +180,8 @@ pub fn pressed(state: &State, context: &egui::Context) -> Vec<Command> {
         // A question waits for its answer first.
         return Vec::new();
     }
-    let typing = context.egui_wants_keyboard_input();
+    let taken = keys_are_taken(context);
+    let focused = context.memory(|memory| memory.focused().is_some());
     // A text field has an undo of its own.
     let editing = context.text_edit_focused();
     let keys_of = |action: Action| action.all_keys().map(move |keys| (action, keys));
@@ -172,12 +193,18 @@ pub fn pressed(state: &State, context: &egui::Context) -> Vec<Command> {
         let undoes = [edit::UNDO.shortcut, edit::REDO.shortcut].contains(&action.shortcut);
         // An open menu is closed by it first.
         let closes = shortcut.logical_key == Key::Escape && egui::Popup::is_any_open(context);
-        if closes || (typing && !shortcut.modifiers.command) || (editing && undoes) {
+        let belongs_elsewhere = taken || focused && IN_FOCUS.contains(&shortcut.logical_key);
+        if closes || (belongs_elsewhere && !shortcut.modifiers.command) || (editing && undoes) {
             continue;
         }
-        if let Some(command) = (action.command)(state)
-            && context.input_mut(|input| input.consume_shortcut(&shortcut))
-        {
+        let Some(command) = (action.command)(state) else {
+            // Else redo, where there is nothing to do again, would be taken for undo.
+            if undoes && shortcut.modifiers.shift {
+                context.input_mut(|input| input.consume_shortcut(&shortcut));
+            }
+            continue;
+        };
+        if context.input_mut(|input| input.consume_shortcut(&shortcut)) {
             commands.push(command);
             // The letter of a key that brings the cursor into a field is no part of what is written there.
             context.input_mut(|input| {

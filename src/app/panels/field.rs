@@ -3,6 +3,8 @@
 
 use fragscale_formats::may_be_thousands;
 
+use super::accessible::described;
+
 /// Draws the field; returns the new number once it is settled. `label` names it for screen readers.
 pub(super) fn number_field(
     ui: &mut egui::Ui,
@@ -104,9 +106,13 @@ pub(super) fn hinted_field(
     (left && typed != text).then_some(typed)
 }
 
-/// What a screen reader says of a list to choose from: its name and what is chosen.
-pub(super) fn combo_box(name: &str, chosen: &str) -> egui::WidgetInfo {
-    let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name);
-    info.current_text_value = Some(chosen.to_owned());
-    info
+/// Says to a screen reader what a list to choose from is called, and what is chosen.
+pub(super) fn combo_box(list: &egui::Response, name: &str, chosen: &str) {
+    list.widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name);
+        info.current_text_value = Some(chosen.to_owned());
+        info
+    });
+    // Under Linux a list's value is not handed on.
+    described(list, chosen);
 }

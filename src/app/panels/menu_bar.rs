@@ -6,6 +6,7 @@ use crate::actions::file::OPEN_SAMPLE;
 use crate::actions::{Action, MENUS};
 use crate::command::Command;
 use crate::names;
+use crate::panels::Scrolled;
 use crate::state::State;
 use crate::state::preferences::Theme;
 
@@ -22,7 +23,7 @@ pub fn menu_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
                 ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
                 egui::ScrollArea::vertical()
                     .max_height(below_bar - LOWER_EDGE)
-                    .show(ui, |ui| menu(state, name, entries, ui, commands));
+                    .show_focused(ui, |ui| menu(state, name, entries, ui, commands));
             });
         }
     });

@@ -1,5 +1,6 @@
 //! The parts of the window. Each is a function that reads the state and sends commands.
 
+mod accessible;
 mod cloud_alone;
 mod control_points;
 mod corner_loupe;
@@ -31,6 +32,8 @@ mod verdict;
 mod view_buttons;
 mod working;
 
+pub(crate) use accessible::Scrolled;
+pub use accessible::spoken;
 pub use control_points::control as control_points;
 pub use corner_loupe::Crops;
 pub use dialogs::ask;
@@ -108,12 +111,12 @@ pub fn right_panel(
         Tab::Photo => inspector.show(state, ui, commands),
         Tab::Review => review::review(state, inspector, ui, commands),
         Tab::Flight => {
-            egui::ScrollArea::vertical().show(ui, |ui| {
+            egui::ScrollArea::vertical().show_focused(ui, |ui| {
                 flight_settings::flight_settings(state, ui, commands);
             });
         }
         Tab::Limits => {
-            egui::ScrollArea::vertical().show(ui, |ui| {
+            egui::ScrollArea::vertical().show_focused(ui, |ui| {
                 limits_page::limits_page(state, ui, commands);
             });
         }

@@ -5,13 +5,14 @@ use crate::actions;
 use crate::command::{Asking, Command};
 use crate::from_photos::FromPhotosStep;
 use crate::names;
+use crate::panels::Scrolled;
 use crate::panels::working::working;
 use crate::size_distributions::Page;
 use crate::state::State;
 
 /// Draws the start page.
 pub fn start_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    egui::ScrollArea::vertical().show(ui, |ui| {
+    egui::ScrollArea::vertical().show_focused(ui, |ui| {
         ui.vertical_centered(|ui| {
             ui.add_space((ui.available_height() * 0.08).min(60.0));
             ui.heading(egui::RichText::new("fragscale").size(34.0));

@@ -10,7 +10,7 @@ use image::{Rgba, RgbaImage};
 use super::FlightSheet;
 use super::legend::legend;
 use super::signs::{DASHES, TAKE_OFF, WAY, area_line, keep_out_area, way_line};
-use crate::drawing::{Anchor, Colour, Dash, Marker, Pen, png, svg};
+use crate::drawing::{Anchor, Marker, Pen, png, svg};
 use crate::fault::Fault;
 use crate::flight::Verdict;
 use crate::plan::furniture::{self, A_MILLIMETRE, LABEL};

@@ -7,7 +7,7 @@ use glam::DVec2;
 use image::metadata::Orientation;
 use serde_json::json;
 
-use super::plan::PhotoNames;
+use super::photo_names::PhotoNames;
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::files::sha256_of_bytes;

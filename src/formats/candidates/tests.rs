@@ -2,8 +2,8 @@ use std::fs;
 
 use super::*;
 use crate::Kind;
-use crate::detect;
 use crate::read_project;
+use crate::{candidates, detect};
 
 /// A folder with these files.
 fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {

@@ -1,5 +1,7 @@
 //! A rectangle of whole pixels.
 
+use image::RgbImage;
+
 /// A rectangle of whole pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Part {
@@ -27,7 +29,7 @@ impl Part {
     }
 
     /// The pixels of a picture that it lies in.
-    pub(super) fn of(self, picture: &RgbImage) -> RgbImage {
+    pub(in crate::picture) fn of(self, picture: &RgbImage) -> RgbImage {
         let part = self.within(picture.dimensions());
         image::imageops::crop_imm(picture, part.x, part.y, part.width, part.height).to_image()
     }

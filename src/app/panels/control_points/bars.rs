@@ -76,7 +76,7 @@ fn end_of(open: &OpenFlight, end: &mut String, label: &str, ui: &mut egui::Ui) {
                 ui.selectable_value(end, point.name.clone(), &point.name);
             }
         });
-    combo.response.widget_info(|| combo_box(label, end));
+    combo_box(&combo.response, label, end);
 }
 
 fn unit_of(bar: &mut ScaleBar, label: &str, ui: &mut egui::Ui) {
@@ -88,9 +88,7 @@ fn unit_of(bar: &mut ScaleBar, label: &str, ui: &mut egui::Ui) {
                 ui.selectable_value(&mut bar.unit, unit, unit.symbol());
             }
         });
-    combo
-        .response
-        .widget_info(|| combo_box(label, bar.unit.symbol()));
+    combo_box(&combo.response, label, bar.unit.symbol());
 }
 
 /// How long it is in the flight of now, where both of its ends are found.

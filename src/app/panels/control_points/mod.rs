@@ -15,6 +15,7 @@ use crate::names;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::opening::Georeferenced;
+use crate::panels::Scrolled;
 use crate::panels::field::hinted_field;
 use crate::panels::working::working;
 use crate::state::State;
@@ -41,7 +42,7 @@ pub fn control(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.separator();
     egui::ScrollArea::vertical()
         .auto_shrink(false)
-        .show(ui, |ui| {
+        .show_focused(ui, |ui| {
             points::points(open, ui, commands);
             ui.separator();
             bars::bars(open, ui, commands);

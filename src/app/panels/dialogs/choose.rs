@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::command::Command;
 use crate::formats::Candidate;
+use crate::panels::Scrolled;
 use crate::state::State;
 
 /// Draws a button for each.
@@ -12,7 +13,7 @@ pub(super) fn choose(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comman
     ui.label(format!("{} holds several:", folder.display()));
     egui::ScrollArea::vertical()
         .max_height(300.0)
-        .show(ui, |ui| {
+        .show_focused(ui, |ui| {
             for candidate in &state.choices {
                 let button = ui.button(candidate.in_words(&folder));
                 let hover = candidate.path.display().to_string();

@@ -6,6 +6,7 @@ use super::{browse, named_field, path_line};
 use crate::command::{Answers, Command, Dialog};
 use crate::from_photos::{Ended, FolderField, FromPhotos, FromPhotosForm, FromPhotosStep};
 use crate::names;
+use crate::panels::Scrolled;
 use crate::panels::field::hinted_field;
 use crate::reconstruct::{EngineName, PhotoSet, Quality, found, left_out, summary};
 use crate::state::State;
@@ -19,7 +20,7 @@ pub(super) fn from_photos(state: &State, ui: &mut egui::Ui, commands: &mut Vec<C
         .max_height(most)
         // It grows with what is in it.
         .min_scrolled_height(most)
-        .show(ui, |ui| contents(state, ui, commands));
+        .show_focused(ui, |ui| contents(state, ui, commands));
 }
 
 fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

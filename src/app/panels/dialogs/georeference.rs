@@ -9,6 +9,7 @@ use crate::numbers::significant_digits;
 use crate::open_flight::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
 use crate::open_flight::{Measure, OpenFlight};
 use crate::opening::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds};
+use crate::panels::Scrolled;
 use crate::panels::path_field::{in_a_folder, path_field};
 use crate::panels::working::working;
 use crate::state::State;
@@ -40,7 +41,7 @@ pub(super) fn georeference(state: &State, ui: &mut egui::Ui, commands: &mut Vec<
     egui::ScrollArea::vertical()
         .max_height(most)
         .min_scrolled_height(most)
-        .show(ui, |ui| {
+        .show_focused(ui, |ui| {
             ui.label(format!(
                 "{path} is in a frame of its own. What is known of its place in the world?"
             ));

@@ -20,6 +20,8 @@ use crate::command::{Answers, Asking, Command, Dialog, MeasuredTable, PictureReq
 use crate::map::MapCommand;
 use crate::names;
 use crate::open_flight::OpenFlight;
+use crate::panels::accessible::scrolled_by_keys;
+use crate::panels::fragments::tool_keys;
 use crate::panels::path_field::{path_field, path_to_write, taken_path};
 use crate::panels::reconstruct_offer;
 use crate::panels::size_distributions::{
@@ -504,11 +506,22 @@ fn map_pixel(open: &OpenFlight, unit: LengthUnit, ui: &mut egui::Ui) -> Option<f
 fn keys(ui: &mut egui::Ui) {
     // The list is longer than a small screen is high.
     let most = (ui.ctx().content_rect().height() - 90.0).max(100.0);
-    egui::ScrollArea::vertical()
-        .max_height(most)
-        .min_scrolled_height(most)
-        .show(ui, list_of_keys);
+    let area = egui::ScrollArea::vertical();
+    let area = area.max_height(most).min_scrolled_height(most);
+    scrolled_by_keys("List of keys", area, ui, list_of_keys);
 }
+
+/// Keys that are no menu's.
+const OTHER_KEYS: [(&str, &str); 5] = [
+    ("Larger, smaller, 100 %", "Ctrl++, Ctrl+-, Ctrl+0"),
+    ("Go to the next button or field, or back", "Tab, Shift+Tab"),
+    ("Leave it: arrows and space are the photos' again", "Escape"),
+    ("Press a button, open a list", "Space or Enter"),
+    (
+        "Delete or accept while a fragment is selected",
+        "Delete, Enter",
+    ),
+];
 
 fn list_of_keys(ui: &mut egui::Ui) {
     // Long words go on below, where the window is narrow.
@@ -542,6 +555,16 @@ fn list_of_keys(ui: &mut egui::Ui) {
                     said(keys, ui);
                     ui.end_row();
                 }
+            }
+            for (what, keys) in OTHER_KEYS {
+                said(what.to_owned(), ui);
+                said(keys.to_owned(), ui);
+                ui.end_row();
+            }
+            for (tool, keys) in tool_keys(ui.ctx()) {
+                said(format!("Fragments: {tool}"), ui);
+                said(keys, ui);
+                ui.end_row();
             }
         });
 }

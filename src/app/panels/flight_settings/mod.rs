@@ -57,7 +57,7 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
         true => now.unit.symbol(),
         false => "not known",
     };
-    egui::ComboBox::from_id_salt("world unit")
+    let list = egui::ComboBox::from_id_salt("world unit")
         .selected_text(unit_now)
         .show_ui(ui, |ui| {
             for unit in LengthUnit::ALL {
@@ -74,8 +74,8 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
             }
         })
         .response
-        .on_hover_text("Of the cloud and the poses, as your package wrote them")
-        .widget_info(|| combo_box("Unit of the world's coordinates", unit_now));
+        .on_hover_text("Of the cloud and the poses, as your package wrote them");
+    combo_box(&list, "Unit of the world's coordinates", unit_now);
     ui.add_space(8.0);
 
     ui.strong("Ground");

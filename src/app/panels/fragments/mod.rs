@@ -12,11 +12,14 @@ mod on_photo;
 mod picture;
 mod tools;
 
+pub(super) use tools::tool_keys;
+
 pub(in crate::panels) use on_photo::OnPhoto;
 
 use egui::Ui;
 
 use crate::command::Command;
+use crate::panels::Scrolled;
 use crate::state::State;
 
 /// Draws the panel at the right.
@@ -32,5 +35,5 @@ pub fn fragments(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.separator();
     egui::ScrollArea::vertical()
         .auto_shrink(false)
-        .show(ui, |ui| found::found(state, open, photo, ui, commands));
+        .show_focused(ui, |ui| found::found(state, open, photo, ui, commands));
 }

@@ -2,6 +2,7 @@
 
 use egui::{Button, Key, Modifiers, Role, Ui, WidgetInfo};
 
+use crate::actions::keys_are_taken;
 use crate::command::{Asking, Command};
 use crate::fragments::{FragmentStep, FragmentTool};
 use crate::open_flight::OpenFlight;
@@ -107,8 +108,7 @@ pub(super) fn tools(
                     asked = Some(Asking::Network);
                 }
             });
-        combo.response.widget_info(|| combo_box("Engine", chosen));
-        combo.response.on_hover_text(hover);
+        combo_box(&combo.response.on_hover_text(hover), "Engine", chosen);
         if engine != before {
             send(FragmentStep::Engine(engine));
         }
@@ -177,9 +177,17 @@ pub(super) fn tools(
     }
 }
 
+/// Every tool with its key, in words.
+pub(in crate::panels) fn tool_keys(context: &egui::Context) -> [(&'static str, String); 9] {
+    TOOLS.map(|(_, name, modifiers, key, _)| {
+        let keys = egui::KeyboardShortcut::new(modifiers, key);
+        (name, context.format_shortcut(&keys))
+    })
+}
+
 /// The tools' keys.
 pub(super) fn keys(ui: &Ui, commands: &mut Vec<Command>) {
-    if ui.ctx().egui_wants_keyboard_input() {
+    if keys_are_taken(ui.ctx()) {
         return;
     }
     if ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Delete)) {

@@ -18,12 +18,13 @@ use crate::command::Command;
 use crate::linked::PointFrom;
 use crate::names;
 use crate::open_flight::OpenFlight;
+use crate::panels::Scrolled;
 use crate::panels::corner_loupe::{self, Crops};
 use crate::panels::corner_marks::{CORNER_ROOM, draw_corner, nearest_inside};
 use crate::panels::linked;
 use crate::panels::verdict::{verdict_color, verdict_sign};
 use crate::picture::{BarEdge, ScaleBar, scale_bars};
-use crate::scale::{CornerOutcome, ImageKind};
+use crate::scale::ImageKind;
 use crate::state::State;
 use decision::decision;
 use reasons::reasons;
@@ -98,7 +99,7 @@ impl Inspector {
         });
         self.take_texture(open, ui);
         self.picture(state, open, photo, ui, commands);
-        egui::ScrollArea::vertical().show(ui, |ui| {
+        egui::ScrollArea::vertical().show_focused(ui, |ui| {
             if reviewed.scale_to_type().is_some() {
                 scales(state, open, reviewed, ui, commands);
             }

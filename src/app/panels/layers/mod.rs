@@ -32,7 +32,7 @@ pub fn layers_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
             slider.on_hover_text("Size of points");
         });
     });
-    egui::ComboBox::from_id_salt("colour by")
+    let list = egui::ComboBox::from_id_salt("colour by")
         .selected_text(color_name(next.color_by))
         .width(150.0)
         .show_ui(ui, |ui| {
@@ -46,8 +46,8 @@ pub fn layers_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
             }
         })
         .response
-        .on_hover_text("What the colours of surface and points mean")
-        .widget_info(|| combo_box("Colour by", color_name(now.color_by)));
+        .on_hover_text("What the colours of surface and points mean");
+    combo_box(&list, "Colour by", color_name(now.color_by));
     color_range::color_range(state, ui, commands);
     ui.checkbox(&mut next.eye_dome, "Relief shading")
         .on_hover_text("Eye-dome lighting: edges in depth are darkened");

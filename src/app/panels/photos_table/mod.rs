@@ -8,6 +8,7 @@ mod columns;
 
 use egui_extras::{Column as Width, TableBuilder};
 
+use super::accessible::{described, scales_in_words};
 use super::cloud_alone::cloud_alone;
 use super::field::combo_box;
 use super::review::row_menu;
@@ -68,7 +69,8 @@ fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
     let mut table = TableBuilder::new(ui)
         .id_salt("photos")
         .striped(true)
-        .sense(egui::Sense::click())
+        // Not by Tab: a row has as many cells as columns, and arrows go from row to row.
+        .sense(egui::Sense::CLICK)
         .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
         .column(Width::exact(CHECK));
     for width in &widths {
@@ -156,6 +158,7 @@ fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
                     let selected = open.selected == Some(photo);
                     egui::WidgetInfo::selected(egui::Role::Row, true, selected, label)
                 });
+                described(&response, &scales_in_words(&line));
                 if response.clicked() {
                     commands.push(Command::Select(Some(photo)));
                 }
@@ -195,7 +198,7 @@ fn filter(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             .order
             .verdict
             .map_or("any verdict", Verdict::as_str);
-        egui::ComboBox::from_id_salt("verdict filter")
+        let list = egui::ComboBox::from_id_salt("verdict filter")
             .selected_text(wanted)
             .width(90.0)
             .show_ui(ui, |ui| {
@@ -213,8 +216,8 @@ fn filter(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
                 }
             })
             .response
-            .on_hover_text("Show only photos with this verdict")
-            .widget_info(|| combo_box("Filter by verdict", wanted));
+            .on_hover_text("Show only photos with this verdict");
+        combo_box(&list, "Filter by verdict", wanted);
         let is_on = open.table.order.doubtful;
         let doubtful = ui.selectable_label(is_on, "doubtful");
         doubtful.widget_info(|| {

@@ -7,6 +7,7 @@ use super::places::places;
 use crate::command::{Answers, Asking, Command, Dialog};
 use crate::numbers::to_digits;
 use crate::open_flight::OpenFlight;
+use crate::panels::Scrolled;
 use crate::panels::field::{combo_box, hinted_field, number_field};
 use crate::panels::working::working;
 use crate::plan::{
@@ -38,7 +39,7 @@ pub fn asked_of_plan(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
     }
     egui::ScrollArea::vertical()
         .auto_shrink(false)
-        .show(ui, |ui| {
+        .show_focused(ui, |ui| {
             let mut asked = now.clone();
             fields(state, open, &mut asked, ui);
             places(open, &mut asked, ui, commands);
@@ -133,7 +134,7 @@ fn choice<T: PartialEq + Copy>(name: &str, now: &mut T, all: &[(T, &str, &str)],
             }
         }
     });
-    list.response.widget_info(|| combo_box(name, title));
+    combo_box(&list.response, name, title);
     ui.end_row();
 }
 

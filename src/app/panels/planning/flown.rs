@@ -52,7 +52,7 @@ fn table(open: &OpenFlight, flown: &FlownMission, ui: &mut Ui, commands: &mut Ve
     TableBuilder::new(ui)
         .id_salt("planned and flown photos")
         .striped(true)
-        .sense(egui::Sense::click())
+        .sense(egui::Sense::CLICK)
         .column(Column::auto().at_least(40.0))
         .column(Column::auto().at_least(40.0).clip(true))
         .columns(Column::auto().at_least(30.0), 6)

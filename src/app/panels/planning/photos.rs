@@ -152,7 +152,7 @@ fn table(
     let mut table = TableBuilder::new(ui)
         .id_salt("planned photos")
         .striped(true)
-        .sense(egui::Sense::click())
+        .sense(egui::Sense::CLICK)
         .column(Column::auto().at_least(40.0))
         .columns(Column::auto().at_least(38.0), 3)
         .column(Column::remainder().at_least(18.0));

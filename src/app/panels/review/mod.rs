@@ -11,6 +11,7 @@ use crate::command::{Command, ReviewStep};
 use crate::flight::{DecisionKind, PhotoReview};
 use crate::names::{self, unbroken};
 use crate::open_flight::OpenFlight;
+use crate::panels::Scrolled;
 use crate::panels::inspector::{Inspector, Offer, SIZE_ERROR, remedy_button};
 use crate::panels::verdict::{verdict_color, verdict_sign};
 use crate::reviewing::note_field;
@@ -46,7 +47,7 @@ pub(super) fn review(
     if let Some(sight) = open.sight() {
         inspector.reason_picture(state, open, (photo, reviewed), &sight.on_photo, ui);
     }
-    egui::ScrollArea::vertical().show(ui, |ui| {
+    egui::ScrollArea::vertical().show_focused(ui, |ui| {
         reasons(state, open, reviewed, ui, commands);
         size_errors(state, reviewed, ui);
         if let Some(decided) = reviewed.decided() {

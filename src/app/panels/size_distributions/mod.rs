@@ -26,6 +26,7 @@ pub(super) use paste::paste;
 
 use crate::NARROW;
 use crate::command::Command;
+use crate::panels::Scrolled;
 use crate::state::State;
 
 /// Draws the page.
@@ -50,7 +51,7 @@ pub fn size_distributions(state: &State, ui: &mut egui::Ui, commands: &mut Vec<C
             .show(ui, |ui| {
                 egui::ScrollArea::vertical()
                     .auto_shrink(false)
-                    .show(ui, |ui| {
+                    .show_focused(ui, |ui| {
                         files::files(state, ui, commands);
                         ui.separator();
                         settings::settings(state, ui, commands);

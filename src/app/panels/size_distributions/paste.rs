@@ -41,12 +41,9 @@ pub(in crate::panels) fn paste(state: &State, ui: &mut egui::Ui, commands: &mut 
                 }
             });
         let chosen = form.unit.symbol();
-        combo
-            .response
-            .widget_info(|| combo_box("Unit of the table", chosen));
-        combo
-            .response
-            .on_hover_text("Where the table does not say it");
+        let list = combo.response;
+        let list = list.on_hover_text("Where the table does not say it");
+        combo_box(&list, "Unit of the table", chosen);
         ui.end_row();
         for (text, name, hint) in [
             (

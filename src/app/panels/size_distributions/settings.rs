@@ -128,6 +128,5 @@ fn choice<T: PartialEq + Clone>(
                 ui.selectable_value(chosen, value.clone(), text);
             }
         });
-    combo.response.widget_info(|| combo_box(name, text));
-    combo.response.on_hover_text(hover);
+    combo_box(&combo.response.on_hover_text(hover), name, text);
 }

@@ -2,12 +2,13 @@
 
 use crate::actions;
 use crate::command::Command;
+use crate::panels::Scrolled;
 use crate::panels::working::working;
 use crate::state::State;
 
 /// Draws the page without data.
 pub(super) fn welcome(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    egui::ScrollArea::vertical().show(ui, |ui| {
+    egui::ScrollArea::vertical().show_focused(ui, |ui| {
         ui.vertical_centered(|ui| {
             ui.add_space((ui.available_height() * 0.1).min(70.0));
             ui.heading(egui::RichText::new("Size distributions").size(26.0));

@@ -3,6 +3,7 @@
 use crate::command::{Asking, Command, MeasuredTable};
 use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::picked::PickStep;
+use crate::panels::Scrolled;
 use crate::panels::field::text_field;
 
 /// The small window while the tool is taken; it can be moved.
@@ -46,7 +47,7 @@ fn list(open: &OpenFlight, place: egui::Rect, ui: &mut egui::Ui, commands: &mut 
     let most = (place.height() * 0.4).max(60.0);
     egui::ScrollArea::vertical()
         .max_height(most)
-        .show(ui, |ui| rows(open, ui, commands));
+        .show_focused(ui, |ui| rows(open, ui, commands));
     ui.horizontal_wrapped(|ui| {
         let is_some = !points.is_empty();
         let hover = "The list as a table with tabs between its columns, all digits (Ctrl+C)";

@@ -45,11 +45,11 @@ pub struct CloudPieces {
     pub pieces: Vec<CloudPiece>,
     /// Of octrees, which know where each piece lies: what of the cloud is known without reading it.
     pub facts: Option<CloudFacts>,
-    pub(super) source: Source,
+    source: Source,
 }
 
 #[derive(Debug)]
-pub(super) enum Source {
+enum Source {
     Records(Records),
     Tiles(Tiles),
 }

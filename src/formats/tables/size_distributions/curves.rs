@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::names::{SizeText, SizeUnit};
-use super::raw::{RawCurve, RawPoint};
+use super::raw::RawCurve;
 use crate::fault::Fault;
 use crate::fragmentation::{DistributionSet, LabelledDistribution, Labels, SizeDistribution};
 use crate::tables::table::NumberRepairs;

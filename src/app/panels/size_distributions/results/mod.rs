@@ -7,6 +7,7 @@ mod repeatability;
 mod sentence;
 
 use crate::command::Command;
+use crate::panels::Scrolled;
 use crate::size_distributions::{DistributionCommand, ResultTab};
 use crate::state::State;
 
@@ -43,7 +44,7 @@ pub(super) fn results(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comma
     egui::ScrollArea::vertical()
         .id_salt("results")
         .auto_shrink(false)
-        .show(ui, |ui| {
+        .show_focused(ui, |ui| {
             if state.distributions.tab == ResultTab::Effort {
                 effort::effort(state, ui, commands);
                 return;

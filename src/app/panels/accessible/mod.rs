@@ -1,0 +1,20 @@
+//! What a screen reader is told beyond names and values, and what who has no mouse needs.
+//!
+//! ```text
+//! scrolled   a panel that goes along with the keyboard's focus
+//! spoken     what changed, said aloud
+//! ```
+
+mod scrolled;
+mod spoken;
+
+pub(crate) use scrolled::Scrolled;
+pub(super) use scrolled::scrolled_by_keys;
+pub(super) use spoken::scales_in_words;
+pub use spoken::spoken;
+
+/// Says more of a part of the window to a screen reader than its name.
+pub(super) fn described(part: &egui::Response, words: &str) {
+    part.ctx
+        .accesskit_node_builder(part.id, |node| node.set_description(words));
+}

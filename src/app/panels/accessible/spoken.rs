@@ -1,0 +1,47 @@
+//! What changed, for a screen reader to say: the photo that is selected now, and the last line of the log.
+
+use egui::accesskit::Live;
+
+use crate::exports::PhotoLine;
+use crate::state::State;
+
+/// A part without size whose words are said aloud when they change.
+pub fn spoken(state: &State, ui: &egui::Ui) {
+    let line = state.log.last().map_or("", |line| line.text.as_str());
+    let photo = selected(state).unwrap_or_default();
+    for (name, words) in [("selected photo", photo.as_str()), ("last message", line)] {
+        let id = egui::Id::unique(name);
+        ui.interact(egui::Rect::ZERO, id, egui::Sense::empty());
+        ui.ctx().accesskit_node_builder(id, |node| {
+            node.set_role(egui::Role::Status);
+            node.set_label(words);
+            node.set_live(Live::Polite);
+        });
+    }
+}
+
+/// "IMG_0001.jpg: top 20.6, bottom 21.4 px/cm, trust".
+fn selected(state: &State) -> Option<String> {
+    let open = state.open.as_ref()?;
+    let row = open.row(open.selected?)?;
+    let line = PhotoLine {
+        unit: state.preferences.unit(),
+        to_type: true,
+        ..row.line
+    };
+    Some(format!("{}: {}", line.photo.name(), scales_in_words(&line)))
+}
+
+/// "top 20.6, bottom 21.4 px/cm, trust".
+pub(in crate::panels) fn scales_in_words(line: &PhotoLine<'_>) -> String {
+    let verdict = line.photo.settled();
+    let verdict = verdict.map_or("not looked at yet", |verdict| verdict.as_str());
+    let estimates = line.estimates(line.photo.pair);
+    match estimates.map(|estimate| estimate.map(|scale| scale.text(4))) {
+        [None, None] => verdict.to_owned(),
+        scales => {
+            let [top, bottom] = scales.map(|scale| scale.unwrap_or_else(|| "none".to_owned()));
+            format!("top {top}, bottom {bottom} px/{}, {verdict}", line.unit)
+        }
+    }
+}
