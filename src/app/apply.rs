@@ -18,6 +18,9 @@ use crate::state::history::History;
 use crate::state::{HeldBack, Leaving, Named, Severity, State};
 use crate::tasks::Task;
 
+/// So much of what was copied is shown.
+const COPIED_SHOWN: usize = 60;
+
 impl State {
     /// Does what a command says.
     pub fn apply(&mut self, command: Command) {
@@ -132,10 +135,10 @@ impl State {
             Command::DismissNotice => self.notice = None,
             Command::CopyScales => {
                 if let Some(text) = self.scales_to_copy() {
-                    self.context.copy_text(text);
+                    self.copy(text);
                 }
             }
-            Command::Copy(text) => self.context.copy_text(text),
+            Command::Copy(text) => self.copy(text),
             Command::Report(text) => self.say(Severity::Error, &text),
             Command::TakeAnswer => self.answered = None,
             Command::Undo if self.page == Page::SizeDistributions => {
@@ -488,5 +491,13 @@ impl State {
             )
         };
         Some(format!("{}\t{}", shown(top), shown(bottom)))
+    }
+
+    /// Copies, and says so: nothing else shows it.
+    fn copy(&mut self, text: String) {
+        let more = text.chars().nth(COPIED_SHOWN).map_or("", |_| "…");
+        let shown: String = text.chars().take(COPIED_SHOWN).collect();
+        self.say(Severity::Note, &format!("copied: {shown}{more}"));
+        self.context.copy_text(text);
     }
 }

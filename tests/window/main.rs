@@ -37,6 +37,7 @@ mod fragments;
 mod from_photos;
 mod georeference;
 mod health;
+mod keyboard;
 mod large_clouds;
 mod linked;
 mod long_names;

@@ -14,7 +14,7 @@ use crate::state::preferences::Theme;
 pub fn menu_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     egui::MenuBar::new().ui(ui, |ui| {
         for (name, entries) in MENUS {
-            ui.menu_button(name, |ui| {
+            let menu = ui.menu_button(name, |ui| {
                 // In a low window, or at 200 %, the last entries would lie below its edge. A bar that is always seen:
                 // nothing else says that there is more.
                 ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
@@ -23,8 +23,12 @@ pub fn menu_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
                 ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
                 egui::ScrollArea::vertical()
                     .max_height(below_bar - LOWER_EDGE)
-                    .show_focused(ui, |ui| menu(state, name, entries, ui, commands));
+                    .show_focused(ui, |ui| entries_of(state, name, entries, ui, commands));
             });
+            // As everywhere: the first menu, from which arrows lead to the others.
+            if name == MENUS[0].0 && ui.input(|input| input.key_pressed(egui::Key::F10)) {
+                menu.response.request_focus();
+            }
         }
     });
 }
@@ -32,7 +36,7 @@ pub fn menu_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 /// Left between a long menu and the window's lower edge, points.
 const LOWER_EDGE: f32 = 12.0;
 
-fn menu(
+fn entries_of(
     state: &State,
     name: &str,
     entries: &[Option<Action>],

@@ -512,7 +512,8 @@ fn keys(ui: &mut egui::Ui) {
 }
 
 /// Keys that are no menu's.
-const OTHER_KEYS: [(&str, &str); 5] = [
+const OTHER_KEYS: [(&str, &str); 6] = [
+    ("Go to the menus", "F10"),
     ("Larger, smaller, 100 %", "Ctrl++, Ctrl+-, Ctrl+0"),
     ("Go to the next button or field, or back", "Tab, Shift+Tab"),
     ("Leave it: arrows and space are the photos' again", "Escape"),

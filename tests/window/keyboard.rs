@@ -1,0 +1,194 @@
+//! By the keyboard alone, and what a screen reader is told, as a newcomer without a mouse found it.
+
+use egui::accesskit::{Live, Role};
+use egui::{Key, Modifiers, Rect};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use fragscale::app::App;
+use fragscale::app::command::{Asking, Command, Tab};
+use fragscale::flight::Verdict;
+
+use crate::desk::{Desk, flight};
+
+const REDO: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+/// A small window with the bundled flight.
+fn small() -> Desk {
+    let path = flight("assets/sample");
+    let harness = Harness::builder()
+        .with_size([900.0, 600.0])
+        .with_max_steps(30)
+        .build_eframe(|context| App::new(context, vec![path]));
+    let mut desk = Desk { harness };
+    desk.settle();
+    desk
+}
+
+fn focused(desk: &Desk) -> Option<(String, Rect)> {
+    let id = desk.harness.ctx.memory(|memory| memory.focused())?;
+    let part = desk.harness.ctx.read_response(id)?;
+    let all = desk.harness.query_all(egui_kittest::kittest::By::new());
+    let name = all
+        .filter(|node| node.accesskit_node().is_focused())
+        .find_map(|node| node.accesskit_node().label());
+    Some((name.unwrap_or_default(), part.rect))
+}
+
+/// Ctrl+Shift+Z with nothing to do again took back what was done: egui takes Ctrl+Z for a part of it.
+#[test]
+fn redo_never_undoes() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    let count = |desk: &Desk| {
+        let photos = desk.open().review.photos();
+        photos
+            .filter(|photo| photo.verdict == Verdict::LeftOut)
+            .count()
+    };
+    desk.press(Modifiers::NONE, Key::ArrowDown);
+    desk.press(Modifiers::NONE, Key::Space);
+    let decided = desk.open().settings().decisions.len();
+    assert!(decided > 0);
+    let left_out = count(&desk);
+    for keys in [(REDO, Key::Z), (Modifiers::COMMAND, Key::Y)] {
+        desk.press(keys.0, keys.1);
+        assert_eq!(desk.open().settings().decisions.len(), decided);
+        assert_eq!(count(&desk), left_out);
+    }
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(desk.open().settings().decisions.len(), decided - 1);
+    desk.press(REDO, Key::Z);
+    assert_eq!(desk.open().settings().decisions.len(), decided);
+}
+
+/// What Tab comes to in a page that is longer than its panel comes into sight.
+#[test]
+fn what_has_the_focus_is_in_sight() {
+    let mut desk = small();
+    desk.harness.state_mut().apply(Command::Tab(Tab::Limits));
+    desk.settle();
+    let foot = desk.harness.ctx.content_rect().bottom();
+    let last = "The 95 % interval of a scale is wider than";
+    let mut came = false;
+    for _ in 0..250 {
+        desk.press(Modifiers::NONE, Key::Tab);
+        let Some((name, place)) = focused(&desk) else {
+            continue;
+        };
+        assert!(place.bottom() <= foot + 1.0, "{name}: {place}");
+        if name.starts_with(last) {
+            came = true;
+            break;
+        }
+    }
+    assert!(came);
+}
+
+/// The list of keys is longer than a window, and is read without a mouse.
+#[test]
+fn the_list_of_keys_is_read_by_keys() {
+    let mut desk = small();
+    desk.press(Modifiers::NONE, Key::F1);
+    let place = |desk: &Desk| {
+        let texts = desk.texts();
+        let last = texts
+            .iter()
+            .find(|(text, _)| text.starts_with("Fragments: "));
+        last.expect("the tools of fragments").1.top()
+    };
+    let before = place(&desk);
+    desk.press(Modifiers::NONE, Key::ArrowDown);
+    desk.press(Modifiers::NONE, Key::End);
+    assert!(place(&desk) < before - 200.0, "{} {before}", place(&desk));
+    assert!(place(&desk) < desk.harness.ctx.content_rect().bottom());
+    // The list behind did not move with it.
+    assert_eq!(desk.open().selected, Some(0));
+    desk.press(Modifiers::NONE, Key::Home);
+    assert!((place(&desk) - before).abs() < 2.0);
+    desk.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(desk.harness.state().state().asking, None);
+}
+
+/// A key that a button has no use for is the program's, also while the button has the focus.
+#[test]
+fn keys_go_on_beside_a_button() {
+    let mut desk = small();
+    desk.press(Modifiers::NONE, Key::Tab);
+    assert!(focused(&desk).is_some());
+    let before = desk.open().selected;
+    desk.press(Modifiers::NONE, Key::ArrowDown);
+    assert_eq!(
+        desk.open().selected,
+        before,
+        "arrows lead from button to button"
+    );
+    desk.press(Modifiers::NONE, Key::F1);
+    assert_eq!(desk.harness.state().state().asking, Some(Asking::Keys));
+    desk.press(Modifiers::NONE, Key::Escape);
+    desk.click(Role::TextInput, "Filter photos");
+    desk.press(Modifiers::NONE, Key::F1);
+    assert_eq!(
+        desk.harness.state().state().asking,
+        None,
+        "a field takes all keys"
+    );
+}
+
+/// Tab goes over a photo in one step, its box: its cells are no stops.
+#[test]
+fn a_photo_is_one_stop() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.click(Role::TextInput, "Filter photos");
+    let mut boxes = Vec::new();
+    for step in 0..40 {
+        desk.press(Modifiers::NONE, Key::Tab);
+        let name = focused(&desk).map_or_else(String::new, |(name, _)| name);
+        if name.starts_with("Export IMG") {
+            boxes.push(step);
+        }
+    }
+    assert!(boxes.len() >= 9, "{boxes:?}");
+    assert!(
+        boxes.windows(2).all(|pair| pair[1] - pair[0] == 1),
+        "{boxes:?}"
+    );
+}
+
+/// The row says its numbers, and the photo that is selected is said aloud.
+#[test]
+fn a_screen_reader_is_told() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    let row = desk.node(Role::Row, "Photo IMG_0001.jpg");
+    let words = row.accesskit_node().description().expect("numbers");
+    assert!(
+        words.starts_with("top 20.6") && words.contains("px/cm"),
+        "{words}"
+    );
+    assert!(
+        words.ends_with(", trust") || words.ends_with(", check"),
+        "{words}"
+    );
+    let spoken = |desk: &Desk| -> Vec<String> {
+        let all = desk.harness.query_all_by_role(Role::Status);
+        all.filter(|node| node.accesskit_node().live() == Live::Polite)
+            .filter_map(|node| node.accesskit_node().label())
+            .collect()
+    };
+    assert!(spoken(&desk).contains(&format!("IMG_0001.jpg: {words}")));
+    desk.press(Modifiers::NONE, Key::ArrowDown);
+    assert!(
+        spoken(&desk)
+            .iter()
+            .any(|said| said.starts_with("IMG_0002.jpg: top "))
+    );
+    desk.harness
+        .state_mut()
+        .apply(Command::Report("no such file".to_owned()));
+    desk.settle();
+    assert!(spoken(&desk).contains(&"no such file".to_owned()));
+    // Lists say what is chosen.
+    let list = desk.node(Role::ComboBox, "Filter by verdict");
+    assert_eq!(
+        list.accesskit_node().description().as_deref(),
+        Some("any verdict")
+    );
+}
