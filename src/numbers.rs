@@ -52,10 +52,10 @@ fn decimals_allowed(value: f64, low: f64, high: f64) -> Option<i32> {
     has_width.then(|| decimals_of(half))
 }
 
-/// Half the width of an interval in percent of its number, such as "2 %"; `None` where it has none.
+/// Half the width of an interval in percent of its number, such as "2 %"; `None` where it has none, or a millionth of the number.
 pub fn interval_percent(value: f64, low: f64, high: f64) -> Option<String> {
     let percent = ((high - low) / 2.0 / value * 100.0).abs();
-    let is_some = percent > 0.0 && percent.is_finite();
+    let is_some = is_width(percent) && percent.is_finite();
     // One digit, two of what begins with 1: nobody reads more from a percentage.
     let digits = if leading(percent) < 1.95 { 2 } else { 1 };
     let decimals = decimals_for(percent, digits).max(0);
@@ -89,6 +89,11 @@ fn with_decimals(number: f64, decimals: i32) -> String {
         number
     };
     format!("{rounded:.*}", usize::try_from(decimals).unwrap_or(0))
+}
+
+/// Whether so many percent of a number are more than what rounding leaves.
+pub fn is_width(percent: f64) -> bool {
+    percent > 100.0 * NO_WIDTH
 }
 
 /// A relative standard error in percent, with the four digits that such a number can have.
@@ -203,6 +208,8 @@ mod tests {
             assert_eq!(percent(half).as_deref(), Some(text), "{half}");
         }
         assert_eq!(percent(0.0), None);
+        // What rounding leaves of a cloud without errors.
+        assert_eq!(percent(1e-5), None);
         assert_eq!(interval_percent(0.0, -1.0, 1.0), None);
     }
 
