@@ -8,6 +8,7 @@ mod flight_sheet;
 mod flown_figure;
 mod flown_report;
 mod fragments;
+mod geo_tags;
 mod html_page;
 mod map_places;
 mod markup;

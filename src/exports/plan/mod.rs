@@ -47,7 +47,8 @@ pub use photos::RoomForNames;
 
 use crate::fault::Fault;
 use crate::flight::{Date, Review, Verdict};
-use crate::geodesy::{Crs, CrsKind, is_stated};
+use crate::geo_tags::{crs_in_words, projected};
+use crate::geodesy::is_stated;
 use crate::jobs::Progress;
 use crate::numbers::{round_down, round_near};
 use crate::surface::{Light, MapRaster};
@@ -249,24 +250,11 @@ impl Plan {
 
     /// Whether the coordinates are those of a map, so that y is its north.
     pub fn is_on_map(&self) -> bool {
-        self.projected().is_some()
+        projected(self.crs.as_deref()).is_some()
     }
-
-    fn projected(&self) -> Option<Crs> {
-        let crs = Crs::understand(self.crs.as_deref()?).ok()?;
-        (crs.kind() == CrsKind::Projected).then_some(crs)
-    }
-
     /// What to call the coordinate system: its code, the name that its WKT has, or that none is stated.
     pub fn crs_in_words(&self) -> String {
-        match self.crs.as_deref() {
-            None => "own frame, no coordinate system is stated".to_owned(),
-            Some(text) if text.contains('[') => {
-                let name = text.split('"').nth(1).unwrap_or("WKT");
-                name.to_owned()
-            }
-            Some(text) => text.to_owned(),
-        }
+        crs_in_words(self.crs.as_deref())
     }
 
     /// What lengths on it are counted in, for people.

@@ -13,14 +13,16 @@ mod world_file;
 
 use std::borrow::Cow;
 
+use glam::DVec2;
 use image::RgbImage;
 
 use self::description::description;
 use crate::fault::Fault;
+use crate::geo_tags::{OnMap, geo_tags};
 use crate::numbers::significant_digits;
 use crate::picture::{bar_below, warped};
 use crate::scale::{Onto, Rectification};
-use crate::tiff_pages::{Page, Pixels, fraction, tiff_of};
+use crate::tiff_pages::{GeoTags, Page, Pixels, fraction, tiff_of};
 use crate::units::LengthUnit;
 
 /// A rectification with what has to be said beside it.
@@ -97,11 +99,25 @@ impl RectifiedPhoto<'_> {
                     pixels: Pixels::Colors(Cow::Owned(picture.into_raw())),
                     description: description(self),
                     resolution,
-                    georeference: None,
+                    georeference: self.georeference(),
                 };
                 tiff_of(std::iter::once(Ok(page)))
             }
         }
+    }
+
+    /// Where it lies on the map; nowhere on a plane that is not level.
+    fn georeference(&self) -> Option<GeoTags> {
+        let raster = &self.rectification.raster;
+        let is_level = matches!(self.onto, Onto::HorizontalPlane | Onto::Surface);
+        is_level.then(|| {
+            geo_tags(&OnMap {
+                crs: self.crs,
+                unit: Some(self.world_unit),
+                pixel: raster.pixel,
+                corner: raster.world_from_picture(DVec2::ZERO).truncate(),
+            })
+        })
     }
 
     /// What was made, for people.

@@ -303,7 +303,10 @@ fn a_png_says_how_large_its_pixels_are() {
 #[test]
 fn a_tiff_says_the_same_and_holds_the_same_picture() {
     let (rectification, photo) = small();
-    let rectified = of(&rectification, Onto::HorizontalPlane);
+    let rectified = RectifiedPhoto {
+        crs: Some("EPSG:32632"),
+        ..of(&rectification, Onto::HorizontalPlane)
+    };
     let png = rectified.bytes(&photo, RectifiedFormat::Png).unwrap();
     let png = image::load_from_memory(&png).unwrap().to_rgba8();
     let bytes = rectified.bytes(&photo, RectifiedFormat::Tiff).unwrap();
@@ -321,6 +324,27 @@ fn a_tiff_says_the_same_and_holds_the_same_picture() {
         panic!("not bytes");
     };
     assert!(pixels == *png.as_raw());
+    // Where the world file has the middle of the first pixel, GeoTIFF has its corner.
+    let sides = decoder.get_tag_f64_vec(Tag::ModelPixelScaleTag).unwrap();
+    assert_eq!(sides, [0.05, 0.05, 0.0]);
+    let place = decoder.get_tag_f64_vec(Tag::ModelTiepointTag).unwrap();
+    let world = rectified.world_file();
+    let world: Vec<f64> = world
+        .lines()
+        .take(6)
+        .map(|line| line.parse().unwrap())
+        .collect();
+    assert_eq!(place[..3], [0.0; 3]);
+    assert!((place[3] + 0.025 - world[4]).abs() < 1e-8, "{place:?}");
+    assert!((place[4] - 0.025 - world[5]).abs() < 1e-8, "{place:?}");
+    let keys = decoder.get_tag_u32_vec(Tag::GeoKeyDirectoryTag).unwrap();
+    // ProjectedCRSGeoKey.
+    let crs = keys.chunks(4).find(|key| key[0] == 3072).map(|key| key[3]);
+    assert_eq!(crs, Some(32_632));
+    let on_plane = of(&rectification, Onto::FittedPlane);
+    let bytes = on_plane.bytes(&photo, RectifiedFormat::Tiff).unwrap();
+    let mut decoder = Decoder::new(Cursor::new(&bytes)).unwrap();
+    assert!(decoder.find_tag(Tag::ModelTiepointTag).unwrap().is_none());
     // Corners that the photo does not show are clear and white; its middle is the photo's.
     assert_eq!(png.get_pixel(0, 0).0, [255, 255, 255, 0]);
     let raster = rectification.raster;
