@@ -233,7 +233,7 @@ fn nobody_writes_past_the_rule() {
                 || word == "File::create(" && name == "app/frame_times.rs"
                 || word == "OpenOptions::new(" && name == "batch/results.rs"
                 || (word == "File::create(" || word == "fs::write(")
-                    && name == "delineation/examples/develop/main.rs";
+                    && name == "opening/examples/develop/main.rs";
             assert!(
                 own || is_test || apart || !code.contains(word),
                 "{name} has {word}): files::write keeps what was read"

@@ -1,7 +1,7 @@
 """Trains the score of nodes on simulated photos.
 
     python3 train.py TRAIN,MORE VALID --to PATCHES --patches 360
-    cargo run --release -p fragscale-delineation --example develop -- features ENGINE PATCHES FEATURES
+    cargo run --release -p fragscale-opening --example develop -- features ENGINE PATCHES FEATURES
     python3 train_score.py FEATURES --to assets/delineation/score_ENGINE.txt --without 13 15
 
 score_unvoted.txt, for networks that give no votes: ENGINE `learned`, --without 13 15 18 19 20 21.
