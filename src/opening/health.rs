@@ -1,4 +1,4 @@
-//! A flight's health at a glance: its unit, coordinate system, up axis, colours, metadata, holes, photos.
+//! A flight's health at a glance: its unit, coordinate system, up axis, colours, metadata, holes, points, photos.
 //! Each is good, or says in one sentence what is not and what mends it; every front end shows these words.
 
 use crate::flight::{ColoursFound, Doubt, PhotoFileState, PhotoReview, Review};
@@ -20,6 +20,8 @@ pub enum HealthItem {
     Exif,
     /// Of the surface, where photos look.
     Holes,
+    /// Of the surface: whether they lie on it. Looked for only where something speaks against them.
+    Points,
     /// Their files.
     Photos,
 }
@@ -34,6 +36,7 @@ impl HealthItem {
             Self::Colours => "colours",
             Self::Exif => "EXIF",
             Self::Holes => "holes",
+            Self::Points => "points",
             Self::Photos => "photos",
         }
     }
@@ -119,18 +122,19 @@ pub struct StatedOfFlight<'a> {
     pub doubtful_up: Option<UpAxis>,
 }
 
-/// How a flight is, in the order of [`HealthItem`].
+/// How a flight is, in the order of [`HealthItem`]; of its points only where something speaks against them.
 pub fn flight_health(review: &Review, stated: &StatedOfFlight<'_>) -> Vec<HealthFinding> {
     let found = [
-        unit(review, stated),
-        coordinates(review, stated),
-        up(review, stated),
-        colours(review),
-        exif(review, stated),
-        holes(review),
-        photos(review),
+        Some(unit(review, stated)),
+        Some(coordinates(review, stated)),
+        Some(up(review, stated)),
+        Some(colours(review)),
+        Some(exif(review, stated)),
+        Some(holes(review)),
+        points(review),
+        Some(photos(review)),
     ];
-    found.into()
+    found.into_iter().flatten().collect()
 }
 
 fn of(item: HealthItem, health: Health, short: impl Into<String>, says: String) -> HealthFinding {
@@ -369,6 +373,21 @@ fn holes(review: &Review) -> HealthFinding {
             of(item, Health::Unknown, "…", says)
         }
     }
+}
+
+fn points(review: &Review) -> Option<HealthFinding> {
+    let is_of_points = |doubt: &Doubt| {
+        matches!(
+            doubt,
+            Doubt::NoisyPoints { .. } | Doubt::RoundedPoints { .. } | Doubt::Wall { .. }
+        )
+    };
+    let (over, reason) = doubted(review, is_of_points);
+    (over > 0).then(|| {
+        let says = format!("{}; the first: {reason}.", share(over, review));
+        let finding = of(HealthItem::Points, Health::Bad, share(over, review), says);
+        finding.with(Remedy::AddSurface)
+    })
 }
 
 fn files_found(review: &Review) -> usize {

@@ -5,7 +5,10 @@ use egui::Key;
 use egui::Modifiers;
 use egui::accesskit::Role;
 use fragscale::app::command::Asking;
+use fragscale::formats::read_cloud;
+use fragscale::jobs::Progress;
 use fragscale::opening::{Health, HealthFinding, HealthItem, Remedy};
+use fragscale::split_mix::SplitMix;
 use fragscale::surface::UpAxis;
 use fragscale::units::LengthUnit;
 
@@ -132,6 +135,34 @@ fn a_pile_that_is_upside_down_is_said() {
         up.says.contains("taken from under the surface"),
         "{}",
         up.says
+    );
+}
+
+/// Points that lie 3 cm (a normal error, 2 % of the distance) above and below where they should.
+#[test]
+fn a_noisy_cloud_is_said() {
+    let folder = copy("assets/sample");
+    let cloud = read_cloud(&folder.path().join("pile.ply"), &Progress::default()).expect("a cloud");
+    let mut random = SplitMix(4);
+    let mut text = String::new();
+    for point in &cloud.cloud.points {
+        // Of twelve shares the sum has a variance of one.
+        let normal: f64 = (0..12).map(|_| random.unit()).sum::<f64>() - 6.0;
+        text += &format!("{} {} {}\n", point.x, point.y, point.z + 0.03 * normal);
+    }
+    std::fs::write(folder.path().join("noisy.xyz"), text).expect("written");
+    let file = folder.path().join("flight.toml");
+    let toml = std::fs::read_to_string(&file).expect("the flight");
+    std::fs::write(&file, toml.replace("pile.ply", "noisy.xyz")).expect("written");
+    let desk = Desk::new(Some(&file));
+    let points = finding(&desk, HealthItem::Points);
+    assert_eq!(points.health, Health::Bad);
+    assert_eq!(points.short, "9 of 9 photos");
+    assert_eq!(points.remedy, Some(Remedy::AddSurface));
+    assert!(
+        points.says.contains("points of one place lie"),
+        "{}",
+        points.says
     );
 }
 

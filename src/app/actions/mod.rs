@@ -154,7 +154,7 @@ pub fn all() -> impl Iterator<Item = Action> {
 }
 
 /// What belongs to a button, a list or a slider that has the focus; other keys do not.
-pub(crate) const IN_FOCUS: [Key; 11] = [
+pub(crate) const IN_FOCUS: [Key; 13] = [
     Key::Enter,
     Key::Space,
     Key::Tab,
@@ -165,6 +165,8 @@ pub(crate) const IN_FOCUS: [Key; 11] = [
     Key::ArrowRight,
     Key::PageUp,
     Key::PageDown,
+    Key::Home,
+    Key::End,
     Key::Delete,
 ];
 

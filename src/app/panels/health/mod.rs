@@ -107,6 +107,7 @@ fn name(item: HealthItem) -> &'static str {
         HealthItem::Colours => "Colours",
         HealthItem::Exif => "EXIF",
         HealthItem::Holes => "Holes",
+        HealthItem::Points => "Points",
         HealthItem::Photos => "Photo files",
     }
 }
