@@ -364,6 +364,7 @@ impl eframe::App for App {
         }
         panels::ask(state, ui.ctx(), out);
         drop_hint(state, ui.ctx());
+        panels::focus_ring(ui.ctx());
         self.times.end(Phase::Panels);
         for command in commands {
             self.state.apply(command);

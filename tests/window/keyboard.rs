@@ -83,6 +83,33 @@ fn what_has_the_focus_is_in_sight() {
     assert!(came);
 }
 
+/// Frames of two points' width: of what has the focus, and of nothing once the mouse was used.
+#[test]
+fn the_focus_is_seen() {
+    let mut desk = small();
+    let frames = |desk: &Desk| -> Vec<Rect> {
+        let shapes = desk.harness.output().shapes.iter();
+        let frames = shapes.filter_map(|clipped| match &clipped.shape {
+            egui::Shape::Rect(frame) if frame.stroke.width == 2.0 => Some(frame.rect),
+            _ => None,
+        });
+        frames.collect()
+    };
+    assert_eq!(frames(&desk), []);
+    for _ in 0..12 {
+        desk.press(Modifiers::NONE, Key::Tab);
+        let (name, place) = focused(&desk).expect("a part");
+        let frames = frames(&desk);
+        assert!(
+            frames.iter().any(|frame| frame.contains_rect(place)),
+            "{name}: {frames:?}"
+        );
+    }
+    let middle = desk.viewport().center();
+    desk.click_at(middle);
+    assert_eq!(frames(&desk), []);
+}
+
 /// The list of keys is longer than a window, and is read without a mouse.
 #[test]
 fn the_list_of_keys_is_read_by_keys() {

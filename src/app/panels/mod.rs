@@ -33,7 +33,7 @@ mod view_buttons;
 mod working;
 
 pub(crate) use accessible::Scrolled;
-pub use accessible::spoken;
+pub use accessible::{focus_ring, spoken};
 pub use control_points::control as control_points;
 pub use corner_loupe::Crops;
 pub use dialogs::ask;

@@ -1,13 +1,16 @@
 //! What a screen reader is told beyond names and values, and what who has no mouse needs.
 //!
 //! ```text
+//! ring       where the focus is
 //! scrolled   a panel that goes along with the keyboard's focus
 //! spoken     what changed, said aloud
 //! ```
 
+mod ring;
 mod scrolled;
 mod spoken;
 
+pub use ring::focus_ring;
 pub(crate) use scrolled::Scrolled;
 pub(super) use scrolled::scrolled_by_keys;
 pub(super) use spoken::scales_in_words;
