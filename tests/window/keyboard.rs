@@ -148,9 +148,12 @@ fn keys_go_on_beside_a_button() {
         before,
         "arrows lead from button to button"
     );
+    let there = focused(&desk).map(|(name, _)| name);
     desk.press(Modifiers::NONE, Key::F1);
     assert_eq!(desk.harness.state().state().asking, Some(Asking::Keys));
     desk.press(Modifiers::NONE, Key::Escape);
+    // Back where it was.
+    assert_eq!(focused(&desk).map(|(name, _)| name), there);
     desk.click(Role::TextInput, "Filter photos");
     desk.press(Modifiers::NONE, Key::F1);
     assert_eq!(

@@ -1,15 +1,18 @@
 //! What a screen reader is told beyond names and values, and what who has no mouse needs.
 //!
 //! ```text
+//! kept       the focus, while a small window is asked
 //! ring       where the focus is
 //! scrolled   a panel that goes along with the keyboard's focus
 //! spoken     what changed, said aloud
 //! ```
 
+mod kept;
 mod ring;
 mod scrolled;
 mod spoken;
 
+pub(super) use kept::keep_focus;
 pub use ring::focus_ring;
 pub(crate) use scrolled::Scrolled;
 pub(super) use scrolled::scrolled_by_keys;
