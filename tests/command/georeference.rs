@@ -91,6 +91,19 @@ fn a_flight_without_a_unit_is_brought_to_the_world() {
     let scales = scales_json(&world, &[]);
     let top = scale(&scales["photos"][0], "top").expect("a scale");
     assert!((top - 1.0 / 3.0).abs() < 1e-6, "{top}");
+    // Distances alone keep no place: of a flight that has one that is said.
+    let placed = folder.path().join("placed.toml");
+    let in_utm = flight.replace("\"unknown\"", "\"m\"\ncrs = \"EPSG:32632\"");
+    fs::write(&placed, in_utm).expect("written");
+    let by_length = ["--distance", "0,0,0 0,0,1 2"];
+    let said = |of: &Path| {
+        let output = fragscale(&command(of, &by_length));
+        String::from_utf8(output.stderr).expect("UTF-8")
+    };
+    let keeps_none = "do not keep here";
+    assert!(said(&placed).contains(keeps_none), "{}", said(&placed));
+    let of_none = folder.path().join("flight.toml");
+    assert!(!said(&of_none).contains(keeps_none), "{}", said(&of_none));
     // A flight with nothing behind it is still none.
     let alone = folder.path().join("alone.toml");
     fs::write(

@@ -12,7 +12,7 @@ use fragscale::split_mix::SplitMix;
 use fragscale::surface::UpAxis;
 use fragscale::units::LengthUnit;
 
-use crate::desk::{Desk, copy, flight};
+use crate::desk::{Desk, copy, copy_files, flight};
 use crate::{own_frame, wrong_pile};
 
 fn finding(desk: &Desk, item: HealthItem) -> &HealthFinding {
@@ -142,6 +142,7 @@ fn a_pile_that_is_upside_down_is_said() {
 #[test]
 fn a_noisy_cloud_is_said() {
     let folder = copy("assets/sample");
+    copy_files("assets/sample/photos", &folder.path().join("photos"));
     let cloud = read_cloud(&folder.path().join("pile.ply"), &Progress::default()).expect("a cloud");
     let mut random = SplitMix(4);
     let mut text = String::new();

@@ -90,8 +90,15 @@ pub(in crate::cli) fn georeference(
         outputs = outputs.and(target, Kind::Flight)?;
     }
     let recording = Recording::start();
-    let result =
+    let mut result =
         opening::georeference(path, &request, progress).map_err(|error| error.to_string())?;
+    if result.positions.is_empty() && behind.is_some_and(|behind| behind.has_place) {
+        result.warnings.push(
+            "the flight has a place, which known distances alone do not keep here: add positions or surveyed points, or apply the \
+             scale bars in the window (Control points…), where it stays"
+                .to_owned(),
+        );
+    }
     outputs.read(&Inputs::default().with_opened(&recording.files()))?;
     if let Some(target) = &arguments.output {
         let name = behind.and_then(|behind| behind.name.as_deref());

@@ -9,7 +9,7 @@ use crate::flight::{Verdict, compare_names};
 use crate::markup::escaped;
 use crate::numbers::significant_digits;
 use crate::scale::{ErrorSource, Ground, ImageKind, ScaleEstimate, ScalePair};
-use crate::units::LengthUnit;
+use crate::units::{LengthUnit, in_words};
 use crate::{PHOTO_COLUMNS, PhotoColumn, PhotoLine, ScaleReport};
 
 const STYLE: &str = include_str!("sheet.css");
@@ -132,7 +132,11 @@ fn row(
     let verdict = photo.verdict.as_str();
     let class = verdict.replace(' ', "-");
     let ground = line.ground().map_or_else(String::new, |z| {
-        format!(", ground at {} {}", significant_digits(z, 6), photo.unit)
+        format!(
+            ", ground at {} {}",
+            significant_digits(z, 6),
+            in_words(photo.unit_known.then_some(photo.unit))
+        )
     });
     let reasons = match photo.doubts.is_empty() {
         true => String::new(),

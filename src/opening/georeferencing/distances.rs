@@ -13,6 +13,7 @@ use crate::fault::Fault;
 use crate::formats::Reconstruction;
 use crate::geometry::Similarity;
 use crate::georeference::{KnownLength, LengthsFit, levelled, scale_of_lengths};
+use crate::numbers::TO_95_PERCENT;
 use crate::scale::StatedErrors;
 use crate::units::LengthUnit;
 
@@ -25,15 +26,17 @@ pub(super) fn by_distances(
     mut warnings: Vec<String>,
 ) -> Result<Georeferenced, Fault> {
     let (lengths, found) = fit_lengths(distances, marked)?;
-    let unit = match (&reconstruction.crs, reconstruction.unit) {
-        (Some(_), Some(unit)) => unit,
+    // A frame whose unit is known has a place, be it the mine's own grid.
+    let stays = reconstruction.crs.is_some() || reconstruction.unit.is_some() && !request.level;
+    let unit = match reconstruction.unit {
+        Some(unit) if stays => unit,
         _ => LengthUnit::Metre,
     };
     let scale = found.scale / unit.metres();
-    let middle = match (&reconstruction.crs, &request.crs) {
-        (Some(_), _) => Some(middle_of(reconstruction)),
-        (None, None) => None,
-        (None, Some(crs)) => {
+    let middle = match (&request.crs, stays) {
+        (_, true) => Some(middle_of(reconstruction)),
+        (None, false) => None,
+        (Some(crs), false) => {
             return Err(Fault::new(
                 format!("distances give a scale, but no place in {crs}"),
                 "leave the coordinate system out, or give positions",
@@ -267,25 +270,31 @@ pub(super) fn of_bars(
     known
 }
 
-/// How long scale bars are in a fitted world, `metres` to a unit of the reconstruction.
-pub(super) fn compared(
+/// How long scale bars are in the world that surveyed points gave; those that contradict the points are said.
+pub(super) fn compare(
+    result: &mut Georeferenced,
     bars: &[KnownDistance],
     marked: &[MarkedPoint],
-    metres: f64,
-) -> Vec<LengthResidual> {
-    let point = |name: &String| {
-        let found = marked.iter().find(|point| point.name == *name);
-        found.map(|point| point.found.point)
-    };
-    let compared = bars.iter().filter_map(|bar| {
-        let KnownEnds::Names(from, to) = &bar.ends else {
-            return None;
-        };
-        Some(LengthResidual {
-            name: format!("{from} to {to}"),
-            known: bar.metres,
-            fitted: point(from)?.distance(point(to)?) * metres,
-        })
-    });
-    compared.collect()
+) -> Result<(), Fault> {
+    let metres = result.similarity.scale * result.unit.metres();
+    let lengths = known_lengths(bars, marked)?;
+    for (name, length) in &lengths {
+        let fitted = length.found * metres;
+        let by_marks = TO_95_PERCENT * length.deviation.unwrap_or_default() / length.found;
+        let allowed = by_marks.hypot(result.scale_interval.unwrap_or_default());
+        if (length.known / fitted - 1.0).abs() > allowed.max(LEAST_CONTRADICTION) {
+            result.warnings.push(format!(
+                "the scale bar {name} is {:.4} m long by the surveyed points (± {}), and {:.4} m is typed: they contradict each other; \
+                 look whether it was measured between other points, or in another unit",
+                fitted,
+                percent(allowed),
+                length.known
+            ));
+        }
+    }
+    result.lengths = fitted(lengths, metres);
+    Ok(())
 }
+
+/// Tapes and staffs are read to less.
+const LEAST_CONTRADICTION: f64 = 0.005;

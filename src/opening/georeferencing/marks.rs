@@ -4,13 +4,14 @@ use std::path::Path;
 
 use glam::{DVec2, DVec3};
 
-use super::Georeferenced;
 use super::photo_names::PhotoNames;
+use super::{Georeferenced, LEAST_SURVEYED};
 use crate::camera::{Camera, Pose};
 use crate::control::{ControlList, Located, MarkedView, POOR_PX, locate};
 use crate::fault::{Fault, first_names};
 use crate::formats::Reconstruction;
 use crate::formats::photos::photo_folder::PhotoFolder;
+use crate::geometry::median;
 use crate::numbers::significant_digits;
 
 /// Who clicks a mark does it to about a pixel.
@@ -18,6 +19,9 @@ const LEAST_MARK_ERROR_PX: f64 = 1.0;
 
 /// Surveyed points are known to about so much, metres: satellites with a base (RTK).
 const SURVEY_ERROR: f64 = 0.03;
+
+/// Marks that miss each other by this share of a photo's longer side, in the median of points, are no carelessness: 20 pixels of 4000.
+const OF_OTHERS: f64 = 0.005;
 
 /// So many times what marks and survey allow is no accident.
 const CONTRADICTS: f64 = 5.0;
@@ -28,6 +32,8 @@ pub(super) struct MarkedPoint {
     pub(super) name: String,
     /// As the list states it; `None` where it is the end of a scale bar alone.
     pub(super) position: Option<DVec3>,
+    /// Of the photos that it is marked in, pixels.
+    pub(super) longer_side: f64,
     /// In the reconstruction's frame.
     pub(super) found: Located,
 }
@@ -104,9 +110,13 @@ pub(super) fn triangulated(
                         point.name
                     ));
                 }
+                let longer_side = seen
+                    .iter()
+                    .map(|(_, camera, ..)| camera.width.max(camera.height));
                 found.push(MarkedPoint {
                     name: point.name.clone(),
                     position: point.position,
+                    longer_side: f64::from(longer_side.max().unwrap_or(1)),
                     found: located,
                 });
             }
@@ -117,6 +127,7 @@ pub(super) fn triangulated(
         }
     }
     warnings.extend(names.warning);
+    refuse_of_others(&found)?;
     if found.is_empty() {
         return Err(Fault::new(
             "none of its control points is marked in two photos of the reconstruction",
@@ -124,6 +135,25 @@ pub(super) fn triangulated(
         ));
     }
     Ok(found)
+}
+
+/// Marks that miss each other all over are of photos of another size, or of others: a fit of them says what it likes.
+fn refuse_of_others(marked: &[MarkedPoint]) -> Result<(), Fault> {
+    let misses = marked.iter().map(|point| point.found.rms_px());
+    let shares = marked
+        .iter()
+        .map(|point| point.found.rms_px() / point.longer_side);
+    let share = median(&mut shares.collect::<Vec<f64>>()).unwrap_or_default();
+    let miss = median(&mut misses.collect::<Vec<f64>>()).unwrap_or_default();
+    match marked.len() >= LEAST_SURVEYED && share > OF_OTHERS {
+        true => Err(Fault::new(
+            format!(
+                "the marks of its control points miss each other by {miss:.0} px (median): they are of photos of another size, or of others"
+            ),
+            "give the folder of the photos that they were made in (--photos), or mark them anew",
+        )),
+        false => Ok(()),
+    }
 }
 
 /// How far marks are off, pixels along columns and rows: as far as those of all points miss each other, and a pixel at least.

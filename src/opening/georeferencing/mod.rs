@@ -191,6 +191,16 @@ pub fn georeference_model(
     if !request.distances.is_empty() && surveyed >= LEAST_SURVEYED {
         warnings.push("the known distance decides alone, and the surveyed control points are not used: leave --distance out to be placed by them".to_owned());
     }
+    if surveyed > 0 && surveyed < LEAST_SURVEYED && !bars.is_empty() {
+        let points = if surveyed == 1 {
+            "1 surveyed point is"
+        } else {
+            "2 surveyed points are"
+        };
+        warnings.push(format!(
+            "{points} too few to be placed by, and not used: the scale bars alone decide"
+        ));
+    }
     // Where the marks are the window's the flight stays in its frame, or where it is.
     let stays = reconstruction.crs.is_some() || request.level || request.marked.is_some();
     let positions = match (&request.positions, &points) {
@@ -289,13 +299,12 @@ pub fn georeference_model(
     result.crs = world.name().map(str::to_owned);
     result.unit = world.unit();
     if distances.is_empty() {
-        let metres = result.similarity.scale * result.unit.metres();
-        result.lengths = distances::compared(&bars, &marked, metres);
+        distances::compare(&mut result, &bars, &marked)
     } else {
         distances::lengthen(&mut result, &known, distances, &marked)
-            .map_err(|fault| FileError::new(path, fault))?;
-        warnings.append(&mut result.warnings);
     }
+    .map_err(|fault| FileError::new(path, fault))?;
+    warnings.append(&mut result.warnings);
     let far = result
         .positions
         .iter()
@@ -358,7 +367,7 @@ pub fn georeference_flight(
         photos: photos.collect(),
         sizes: Sizes::Known,
         crs: request.crs.clone(),
-        unit: Some(parts.unit),
+        unit: parts.unit_known.then_some(parts.unit),
         ..Reconstruction::default()
     };
     if request.level {
@@ -368,7 +377,7 @@ pub fn georeference_flight(
     let stated = (parts.errors.world_scale).map(|percent| percent / 100.0 * TO_95_PERCENT);
     match (stated, found.scale_interval) {
         (Some(stated), Some(bars))
-            if found.crs.is_some() && found.positions.is_empty() && stated < bars =>
+            if parts.unit_known && found.positions.is_empty() && stated < bars =>
         {
             Err(FileError::new(
                 file,

@@ -16,6 +16,8 @@ pub struct BehindFlight {
     pub name: Option<String>,
     /// The folder of its photos.
     pub photos: Option<PathBuf>,
+    /// Whether it has a place in a coordinate system, which the reconstruction knows nothing of.
+    pub has_place: bool,
 }
 
 /// Of a flight.toml or the folder in which it lies; `None` where there is none, or nothing behind it.
@@ -34,5 +36,6 @@ pub fn behind_flight(path: &Path) -> Option<BehindFlight> {
         reconstruction,
         name: flight.name.clone(),
         photos: flight.photo_folder().map(|photos| folder.join(photos)),
+        has_place: flight.crs().is_some() || flight.settings().placed.is_some(),
     })
 }

@@ -44,6 +44,8 @@ impl World {
                 "give another coordinate system, or none for UTM",
             ));
         };
+        // Found at the end it would have cost the hours before.
+        crs.check_lengths(first.place)?;
         let origin = (center / 100.0).round() * 100.0;
         Ok(Some(Self { crs, origin }))
     }
@@ -111,5 +113,8 @@ mod tests {
             assert!((off.z - 37.5).abs() < 1e-6, "{system}: {off}");
             assert!(off.x.abs() < 1e-6, "{system}: {off}");
         }
+        // Made for 9 degrees farther west.
+        let far = World::of(Some("EPSG:32628"), photos.iter()).map(|_| ());
+        assert!(far.unwrap_err().what.contains("on the ground there"));
     }
 }

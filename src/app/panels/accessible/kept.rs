@@ -6,10 +6,13 @@ pub(in crate::panels) fn keep_focus(asks: bool, context: &egui::Context) {
     let focused = context.memory(|memory| memory.focused());
     let before: Option<Option<egui::Id>> = context.data(|data| data.get_temp(kept));
     match (asks, before) {
-        (true, None) => context.data_mut(|data| data.insert_temp(kept, focused)),
+        (true, None) => {
+            context.data_mut(|data| data.insert_temp(kept, focused));
+        }
         (false, Some(before)) => {
             context.data_mut(|data| data.remove::<Option<egui::Id>>(kept));
-            if let (Some(before), None) = (before, focused) {
+            // What had it in the small window is gone.
+            if let Some(before) = before {
                 context.memory_mut(|memory| memory.request_focus(before));
             }
         }

@@ -50,7 +50,7 @@ fn bring_focus_into_sight(ui: &Ui) {
     }
 }
 
-/// Takes the focus at first, and lets the arrows, Page up, Page down, Home and End scroll what is read.
+/// Takes the focus when it appears, and lets the arrows, Page up, Page down, Home and End scroll what is read.
 pub(in crate::panels) fn scrolled_by_keys(
     name: &str,
     area: ScrollArea,
@@ -66,7 +66,14 @@ pub(in crate::panels) fn scrolled_by_keys(
     });
     let frame = ui.interact(shown.inner_rect, id, Sense::focusable_noninteractive());
     frame.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ScrollView, true, name));
-    if ui.memory(|memory| memory.focused().is_none()) {
+    let pass = ui.ctx().cumulative_pass_nr();
+    let before: Option<u64> = ui.data_mut(|data| {
+        let before = data.get_temp(id);
+        data.insert_temp(id, pass);
+        before
+    });
+    let is_new = before.is_none_or(|before| before + 1 < pass);
+    if is_new || ui.memory(|memory| memory.focused().is_none()) {
         frame.request_focus();
     }
     if frame.has_focus() {

@@ -204,3 +204,83 @@ fn the_flight_says_how_sure_the_scale_is() {
     assert_eq!(both.world_scale, Some(3.225));
     assert_eq!(stated(&["0,0,0 1,0,0 2"]), Default::default());
 }
+
+/// What has a unit has a place, also in the mine's own grid: it is scaled about the middle of its cameras.
+#[test]
+fn a_flight_in_the_mines_own_grid_stays_where_it_is() {
+    let model = Reconstruction {
+        unit: Some(LengthUnit::Metre),
+        ..reconstruction()
+    };
+    let request = |level: bool| GeoreferenceRequest {
+        distances: vec!["0,0,0 0,0,10 10.5".parse().unwrap()],
+        level,
+        ..GeoreferenceRequest::default()
+    };
+    let found = georeference_model(Path::new("model"), &model, &request(false)).unwrap();
+    let centers = || model.photos.iter().map(|photo| photo.pose.center);
+    let middle = centers().sum::<DVec3>() / 12.0;
+    assert!(middle.length() > 1.0);
+    assert!(found.similarity.apply(middle).distance(middle) < 1e-9);
+    assert!((found.similarity.scale - 1.05).abs() < 1e-12);
+    let said = found.warnings.join("; ");
+    assert!(said.contains("5.0 % longer; it stays"), "{said}");
+    // Who asks for it to be levelled moves it.
+    let error = georeference_model(Path::new("model"), &model, &request(true)).unwrap_err();
+    assert!(error.fault.what.contains("no plane of points"), "{error}");
+}
+
+/// Bars between surveyed points, as long as they are apart and in feet; and points that are too few.
+#[test]
+fn bars_against_surveyed_points_are_said() {
+    let apart = POINTS[0].1.distance(POINTS[1].1);
+    let said = |points: &[(&str, DVec3)], unit: &str| {
+        let list =
+            marks(points, "EPSG:32632") + &format!("#fragscale bar\tp1\tp2\t{apart}\t{unit}\n");
+        let list = List::new(&list);
+        let request = GeoreferenceRequest {
+            control_points: Some(list.path()),
+            ..GeoreferenceRequest::default()
+        };
+        run(&request).unwrap().warnings.join("; ")
+    };
+    let right = said(&POINTS, "m");
+    assert!(
+        !right.contains("contradict") && !right.contains("too few"),
+        "{right}"
+    );
+    let feet = said(&POINTS, "ft");
+    assert!(feet.contains("scale bar p1 to p2 is 28.1"), "{feet}");
+    assert!(
+        feet.contains("8.5900 m is typed") && feet.contains("contradict each other"),
+        "{feet}"
+    );
+    let two = said(&POINTS[..2], "m");
+    assert!(two.contains("2 surveyed points are too few"), "{two}");
+}
+
+/// Half the pixels: marks of photos of half the size.
+#[test]
+fn marks_of_photos_of_another_size_are_refused() {
+    let right = marks(&POINTS, "EPSG:32632");
+    let halved = right.lines().enumerate().map(|(number, line)| {
+        let mut fields: Vec<String> = line.split(' ').map(str::to_owned).collect();
+        if number > 0 {
+            for pixel in &mut fields[3..5] {
+                *pixel = (pixel.parse::<f64>().unwrap() / 2.0).to_string();
+            }
+        }
+        fields.join(" ") + "\n"
+    });
+    let list = List::new(&halved.collect::<String>());
+    let request = GeoreferenceRequest {
+        control_points: Some(list.path()),
+        ..GeoreferenceRequest::default()
+    };
+    let error = run(&request).unwrap_err();
+    assert!(
+        error.fault.what.contains("photos of another size"),
+        "{error}"
+    );
+    assert!(error.fault.remedy.contains("--photos"), "{error}");
+}
