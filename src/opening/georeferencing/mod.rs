@@ -475,9 +475,12 @@ fn of_photos(
         ));
     }
     if known.len() < photos {
+        let without = (reconstruction.photos.iter().zip(&taken)).filter(|(_, taken)| !**taken);
+        let without: Vec<&str> = without.map(|(photo, _)| photo.name.as_str()).collect();
         warnings.push(format!(
-            "{} of {photos} photos have a known position",
-            known.len()
+            "{} of {photos} photos have a known position; without: {}",
+            known.len(),
+            first_names(&without)
         ));
     }
     warnings.extend(names.warning);

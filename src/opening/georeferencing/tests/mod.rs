@@ -126,6 +126,19 @@ fn projected_positions() {
     assert_eq!((found.used(), found.unit), (12, LengthUnit::Metre));
     assert_eq!(found.heights.as_deref(), Some("not said"));
     assert_eq!(found.warnings, Vec::<String>::new());
+    // What the list lacks has a name.
+    let last = text.trim_end().rfind('\n').unwrap();
+    let list = List::new(&text[..=last]);
+    let found = run(&GeoreferenceRequest {
+        positions: Some(list.path()),
+        ..GeoreferenceRequest::default()
+    });
+    let said = found.unwrap().warnings.join("; ");
+    assert!(
+        said.contains("11 of 12 photos have a known position; without: "),
+        "{said}"
+    );
+    assert!(said.contains("0011.JPG"), "{said}");
 }
 
 /// Longitudes and latitudes of the receivers lead to their zone of UTM; and one that is a street off
