@@ -191,14 +191,14 @@ impl App {
         if !asks || actions::keys_are_taken(context) {
             return;
         }
-        let focused = context.memory(|memory| memory.focused().is_some());
+        let of_focus = actions::keys_of_focus(context);
         context.input_mut(|input| {
             input.events.retain(|event| match event {
                 egui::Event::Text(_) => false,
                 egui::Event::Key { key, modifiers, .. } => {
                     modifiers.command
                         || matches!(key, egui::Key::Tab | egui::Key::Escape | egui::Key::F1)
-                        || focused && actions::IN_FOCUS.contains(key)
+                        || of_focus.contains(key)
                 }
                 _ => true,
             });

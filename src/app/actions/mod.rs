@@ -154,7 +154,7 @@ pub fn all() -> impl Iterator<Item = Action> {
 }
 
 /// What belongs to a button, a list or a slider that has the focus; other keys do not.
-pub(crate) const IN_FOCUS: [Key; 13] = [
+const IN_FOCUS: [Key; 13] = [
     Key::Enter,
     Key::Space,
     Key::Tab,
@@ -170,6 +170,14 @@ pub(crate) const IN_FOCUS: [Key; 13] = [
     Key::Delete,
 ];
 
+/// The keys that belong to the part of the window that has the focus; none where nothing has it.
+pub(crate) fn keys_of_focus(context: &egui::Context) -> &'static [Key] {
+    match context.memory(|memory| memory.focused().is_some()) {
+        true => &IN_FOCUS,
+        false => &[],
+    }
+}
+
 /// Whether letters belong to a field that is typed into, or to an open menu.
 pub(crate) fn keys_are_taken(context: &egui::Context) -> bool {
     context.text_edit_focused() || egui::Popup::is_any_open(context)
@@ -183,7 +191,7 @@ pub fn pressed(state: &State, context: &egui::Context) -> Vec<Command> {
         return Vec::new();
     }
     let taken = keys_are_taken(context);
-    let focused = context.memory(|memory| memory.focused().is_some());
+    let of_focus = keys_of_focus(context);
     // A text field has an undo of its own.
     let editing = context.text_edit_focused();
     let keys_of = |action: Action| action.all_keys().map(move |keys| (action, keys));
@@ -195,7 +203,7 @@ pub fn pressed(state: &State, context: &egui::Context) -> Vec<Command> {
         let undoes = [edit::UNDO.shortcut, edit::REDO.shortcut].contains(&action.shortcut);
         // An open menu is closed by it first.
         let closes = shortcut.logical_key == Key::Escape && egui::Popup::is_any_open(context);
-        let belongs_elsewhere = taken || focused && IN_FOCUS.contains(&shortcut.logical_key);
+        let belongs_elsewhere = taken || of_focus.contains(&shortcut.logical_key);
         if closes || (belongs_elsewhere && !shortcut.modifiers.command) || (editing && undoes) {
             continue;
         }

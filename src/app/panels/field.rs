@@ -114,5 +114,5 @@ pub(super) fn combo_box(list: &egui::Response, name: &str, chosen: &str) {
         info
     });
     // Under Linux a list's value is not handed on.
-    described(list, chosen);
+    described(list, || chosen.to_owned());
 }

@@ -12,7 +12,7 @@ use crate::fragmentation::{Analysis, Curve, Labels, MARKED_PERCENTILES, MethodCu
 const STEPS: u32 = 160;
 
 /// All that is drawn.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
     /// In the order of the methods.
     pub methods: Vec<MethodDrawing>,

@@ -252,6 +252,7 @@ impl Plan {
     pub fn is_on_map(&self) -> bool {
         projected(self.crs.as_deref()).is_some()
     }
+
     /// What to call the coordinate system: its code, the name that its WKT has, or that none is stated.
     pub fn crs_in_words(&self) -> String {
         crs_in_words(self.crs.as_deref())

@@ -133,10 +133,8 @@ pub(super) fn lengthen(
     );
     let room = [found.scale_interval, by_positions.1].map(Option::unwrap_or_default);
     let contradict = match (ratio - 1.0).abs() > room[0].hypot(room[1]) {
-        true => {
-            ": they contradict each other; look whether it was measured between other points, or in another unit"
-        }
-        false => "",
+        true => format!(": {CONTRADICT}"),
+        false => String::new(),
     };
     result.warnings.push(match is_surer {
         true => format!("{said}, which place it{contradict}"),
@@ -284,8 +282,7 @@ pub(super) fn compare(
         let allowed = by_marks.hypot(result.scale_interval.unwrap_or_default());
         if (length.known / fitted - 1.0).abs() > allowed.max(LEAST_CONTRADICTION) {
             result.warnings.push(format!(
-                "the scale bar {name} is {:.4} m long by the surveyed points (± {}), and {:.4} m is typed: they contradict each other; \
-                 look whether it was measured between other points, or in another unit",
+                "the scale bar {name} is {:.4} m long by the surveyed points (± {}), and {:.4} m is typed: {CONTRADICT}",
                 fitted,
                 percent(allowed),
                 length.known
@@ -295,6 +292,9 @@ pub(super) fn compare(
     result.lengths = fitted(lengths, metres);
     Ok(())
 }
+
+/// What is said of two lengths that cannot both be right.
+const CONTRADICT: &str = "they contradict each other; look whether it was measured between other points, or in another unit";
 
 /// Tapes and staffs are read to less.
 const LEAST_CONTRADICTION: f64 = 0.005;

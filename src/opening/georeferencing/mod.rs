@@ -197,9 +197,7 @@ pub fn georeference_model(
         } else {
             "2 surveyed points are"
         };
-        warnings.push(format!(
-            "{points} too few to be placed by, and not used: the scale bars alone decide"
-        ));
+        warnings.push(format!("{points} too few to be placed by, and not used"));
     }
     // Where the marks are the window's the flight stays in its frame, or where it is.
     let stays = reconstruction.crs.is_some() || request.level || request.marked.is_some();

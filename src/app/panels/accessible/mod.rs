@@ -19,8 +19,8 @@ pub(super) use scrolled::scrolled_by_keys;
 pub(super) use spoken::scales_in_words;
 pub use spoken::spoken;
 
-/// Says more of a part of the window to a screen reader than its name.
-pub(super) fn described(part: &egui::Response, words: &str) {
+/// Says more of a part of the window to a screen reader than its name; without one the words are not made.
+pub(super) fn described(part: &egui::Response, words: impl FnOnce() -> String) {
     part.ctx
-        .accesskit_node_builder(part.id, |node| node.set_description(words));
+        .accesskit_node_builder(part.id, |node| node.set_description(words()));
 }

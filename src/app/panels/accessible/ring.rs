@@ -24,11 +24,11 @@ pub fn focus_ring(context: &Context) {
         *shown = !by_mouse && (*shown || by_keys);
         *shown
     });
-    let focused = context.memory(|memory| memory.focused());
-    let Some(part) = focused.and_then(|id| context.read_response(id)) else {
+    if !is_by_keys {
         return;
-    };
-    if is_by_keys {
+    }
+    let focused = context.memory(|memory| memory.focused());
+    if let Some(part) = focused.and_then(|id| context.read_response(id)) {
         let color = context.global_style().visuals.selection.stroke.color;
         let frame = part.interact_rect.expand(1.0);
         context.layer_painter(part.layer_id).rect_stroke(

@@ -5,19 +5,22 @@ use egui::accesskit::Live;
 use crate::exports::PhotoLine;
 use crate::state::State;
 
-/// A part without size whose words are said aloud when they change.
+/// Says both when they change.
 pub fn spoken(state: &State, ui: &egui::Ui) {
-    let line = state.log.last().map_or("", |line| line.text.as_str());
-    let photo = selected(state).unwrap_or_default();
-    for (name, words) in [("selected photo", photo.as_str()), ("last message", line)] {
-        let id = egui::Id::unique(name);
-        ui.interact(egui::Rect::ZERO, id, egui::Sense::empty());
-        ui.ctx().accesskit_node_builder(id, |node| {
-            node.set_role(egui::Role::Status);
-            node.set_label(words);
-            node.set_live(Live::Polite);
-        });
-    }
+    said("selected photo", || selected(state), ui);
+    let last_message = || Some(state.log.last()?.text.clone());
+    said("last message", last_message, ui);
+}
+
+/// A part without size whose words are said aloud when they change; without a screen reader they are not made.
+fn said(name: &str, words: impl FnOnce() -> Option<String>, ui: &egui::Ui) {
+    let id = egui::Id::unique(name);
+    ui.interact(egui::Rect::ZERO, id, egui::Sense::empty());
+    ui.ctx().accesskit_node_builder(id, |node| {
+        node.set_role(egui::Role::Status);
+        node.set_label(words().unwrap_or_default());
+        node.set_live(Live::Polite);
+    });
 }
 
 /// "IMG_0001.jpg: top 20.6, bottom 21.4 px/cm, trust".

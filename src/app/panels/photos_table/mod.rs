@@ -158,7 +158,7 @@ fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
                     let selected = open.selected == Some(photo);
                     egui::WidgetInfo::selected(egui::Role::Row, true, selected, label)
                 });
-                described(&response, &scales_in_words(&line));
+                described(&response, || scales_in_words(&line));
                 if response.clicked() {
                     commands.push(Command::Select(Some(photo)));
                 }

@@ -259,6 +259,38 @@ fn bars_against_surveyed_points_are_said() {
     assert!(two.contains("2 surveyed points are too few"), "{two}");
 }
 
+/// Marks 8 pixels left and right of where they should be, in photos of 4000, are careless and taken; 60 are others.
+#[test]
+fn careless_marks_are_taken() {
+    let right = marks(&POINTS, "EPSG:32632");
+    let fitted = |off: f64| {
+        let moved = right.lines().enumerate().map(|(number, line)| {
+            let mut fields: Vec<String> = line.split(' ').map(str::to_owned).collect();
+            if number > 0 {
+                let sign = if number % 2 == 0 { off } else { -off };
+                let x: f64 = fields[3].parse().unwrap();
+                fields[3] = (x + sign).clamp(0.0, 3999.0).to_string();
+            }
+            fields.join(" ") + "\n"
+        });
+        let list = List::new(&moved.collect::<String>());
+        run(&GeoreferenceRequest {
+            control_points: Some(list.path()),
+            ..GeoreferenceRequest::default()
+        })
+    };
+    let careless = fitted(8.0).unwrap();
+    assert!(
+        (careless.similarity.scale / 7.5 - 1.0).abs() < 0.02,
+        "{careless:?}"
+    );
+    let error = fitted(60.0).unwrap_err();
+    assert!(
+        error.fault.what.contains("photos of another size"),
+        "{error}"
+    );
+}
+
 /// Half the pixels: marks of photos of half the size.
 #[test]
 fn marks_of_photos_of_another_size_are_refused() {
