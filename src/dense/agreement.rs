@@ -113,12 +113,13 @@ impl<'a> Agreement<'a> {
         let far = MOST_PIXELS * per_pixel(&self.theirs).max(per_pixel(own) / m.z);
         let leaning = normal(own, at).dot(self.turn * normal(&self.theirs, found));
         let direction = self.theirs.camera.direction_undistorted(pixel);
+        let is_at_edge = own.before_farther[at] || self.theirs.before_farther[found];
         Some(Seen {
             at: found,
             theirs,
             ours,
             point: self.view.pose.center + self.view.pose.rotation * direction / theirs,
-            is_same: (theirs - ours).abs() < far && leaning > LEAST_COSINE,
+            is_same: !is_at_edge && (theirs - ours).abs() < far && leaning > LEAST_COSINE,
         })
     }
 }

@@ -15,6 +15,8 @@ pub struct DepthMap {
     pub slopes: Vec<[f32; 2]>,
     /// What the search minimised, 0 to 2: one minus the correlation, averaged over the best views.
     pub costs: Vec<f32>,
+    /// Whether something farther lies within half a window of the search: then the depth may be of what is beside it.
+    pub before_farther: Vec<bool>,
     /// How many other views have the same surface there, within [`crate::fuse`]'s limits; 0 where they
     /// were not asked.
     pub supports: Vec<u8>,

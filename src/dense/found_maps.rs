@@ -7,7 +7,9 @@ use rayon::prelude::*;
 use crate::agreement::Agreement;
 use crate::camera::Camera;
 use crate::depth_map::DepthMap;
+use crate::edges::before_farther;
 use crate::fault::Fault;
+use crate::patch_match::EDGE;
 use crate::patch_match::plane::{Plane, Planes};
 use crate::shelf::{Recent, Shelf};
 use crate::view::View;
@@ -15,7 +17,7 @@ use crate::view::View;
 /// Bytes of maps that are kept in memory: a photo and its neighbours, for those of up to 10 megapixels.
 const MOST_BYTES: usize = 1 << 30;
 /// Bytes of a pixel of a [`DepthMap`].
-const OF_A_PIXEL: usize = 21;
+const OF_A_PIXEL: usize = 22;
 
 /// What is known of a map without its pixels.
 #[derive(Debug, Clone, PartialEq)]
@@ -161,11 +163,21 @@ impl DepthMap {
     fn of(outline: &Outline, planes: Planes) -> Self {
         let list = |of: fn(&Plane) -> f32| planes.planes.iter().map(of).collect();
         let costs: Vec<f32> = list(|plane| plane.cost);
+        let slopes: Vec<[f32; 2]> = planes.planes.iter().map(|plane| plane.slope).collect();
+        let size = [outline.camera.width, outline.camera.height].map(|side| side as usize);
+        let inverse_depths = list(|plane| plane.inverse_depth);
         Self {
+            before_farther: before_farther(
+                size,
+                &inverse_depths,
+                &slopes,
+                EDGE as usize,
+                outline.per_pixel,
+            ),
             camera: outline.camera.clone(),
             halvings: outline.halvings,
             depths: list(|plane| plane.inverse_depth.recip()),
-            slopes: planes.planes.iter().map(|plane| plane.slope).collect(),
+            slopes,
             supports: vec![0; costs.len()],
             confidences: costs
                 .iter()

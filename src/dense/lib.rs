@@ -8,7 +8,7 @@
 //! D3  depth_maps.rs  the schedule: coarse to fine, photos alone first, then with the other photos' depths
 //! D2  found_maps.rs  the maps that were found, read from the shelf
 //! D1  patch_match/   the search for a plane at every pixel; `cpu` and `gpu/` are its two back ends
-//! D0  view.rs  neighbours.rs  options.rs  luma.rs  depth_map.rs  agreement.rs  shelf.rs
+//! D0  view.rs  neighbours.rs  options.rs  luma.rs  depth_map.rs  edges.rs  agreement.rs  shelf.rs
 //! ```
 //!
 //! # Frames and numbers
@@ -30,6 +30,7 @@
 mod agreement;
 mod depth_map;
 mod depth_maps;
+mod edges;
 mod found_maps;
 mod fusion;
 mod luma;

@@ -264,6 +264,31 @@ fn exact_maps_are_fused_onto_the_plane() {
     assert!(right * 10 > fused.points.len() * 9);
 }
 
+/// A hole in one map, as deep as the scene: what stands around it within half a window may be in front of it or not, and nothing
+/// supports it there; farther off everything is as before. One pixel alone is a depth that was not found, and spoils no other.
+#[test]
+fn nothing_supports_what_stands_before_a_hole() {
+    let name = crate::found_maps::final_name(0);
+    let [width, height] = SIZE.map(|side| side as usize);
+    let (column, row) = (100, 75);
+    for (half, reach) in [(0, [0, 0]), (1, [2, 3])] {
+        let (views, _, shelf) = exact_maps(0.0);
+        let mut planes = Planes::from_bytes(&shelf.get(&name).unwrap(), width, height).unwrap();
+        for x in column - half..=column + half {
+            planes.planes[row * width + x].inverse_depth *= 0.5;
+        }
+        shelf.put(&name, planes.to_bytes()).unwrap();
+        let map = of_exact(&views, &shelf).graded(0).unwrap().unwrap();
+        for y in row - 5..=row + 5 {
+            for x in column - 5..=column + 5 {
+                let is_beside = x.abs_diff(column) <= reach[0] && y.abs_diff(row) <= reach[1];
+                let supports = map.supports[y * width + x];
+                assert_eq!(supports < 2, is_beside, "{supports} at {x}, {y}");
+            }
+        }
+    }
+}
+
 /// Noise of 0.1 px that is independent from pixel to pixel: found again within 3 %, and the points scatter as
 /// their standard errors say within 5 %.
 #[test]
