@@ -1,5 +1,8 @@
 //! Ctrl+C. The work is asked to stop, as the window's Cancel does, so that it ends what it has started (COLMAP)
 //! and removes what is half written; where it does not look up soon enough, the program ends without it.
+//!
+//! A closed terminal (SIGHUP) and SIGTERM are taken for the same, but where another computer works: nobody meant to
+//! throw that away, and it goes on without a terminal. The program ends then as if it were killed, and says what stays.
 
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
@@ -25,28 +28,53 @@ static UNDER_WAY: Mutex<(Option<Progress>, Option<String>)> = Mutex::new((None, 
 pub(super) fn listen(kept: Option<String>, takes_long: bool) {
     under_way(|(_, stays)| *stays = kept);
     let grace = if takes_long { LONG_GRACE } else { GRACE };
+    #[cfg(unix)]
+    if takes_long {
+        end_where_terminated();
+    }
     // Without the handler, which only fails where another one is set, an interrupt could leave a temporary file.
     let _ = ctrlc::set_handler(move || {
         let work = under_way(|(work, _)| work.clone());
         let Some(work) = work.filter(|work| !work.is_cancelled()) else {
-            end();
+            end(INTERRUPTED.into());
         };
         work.cancel();
         // Elsewhere, so that a second interrupt is heard.
         let waits = move || {
             std::thread::sleep(grace);
-            end();
+            end(INTERRUPTED.into());
         };
         if std::thread::Builder::new().spawn(waits).is_err() {
-            end();
+            end(INTERRUPTED.into());
         }
     });
 }
 
-fn end() -> ! {
+/// From now on SIGHUP and SIGTERM end the program without asking the work to stop. To be called while there is one
+/// thread: those that it starts hold the signals back, as it does, for the one that waits for them. (So would programs
+/// that it starts; whoever works on another computer starts none.)
+#[cfg(unix)]
+fn end_where_terminated() {
+    let signals = ctrlc::Signal::SIGHUP | ctrlc::Signal::SIGTERM;
+    if signals.thread_block().is_err() {
+        return;
+    }
+    let waits = move || {
+        if let Ok(signal) = signals.wait() {
+            // As shells count those that a signal has ended.
+            end(128 + signal as i32);
+        }
+    };
+    if std::thread::Builder::new().spawn(waits).is_err() {
+        // They are taken for Ctrl+C then.
+        let _ = signals.thread_unblock();
+    }
+}
+
+fn end(status: i32) -> ! {
     files::remove_unfinished();
     say_so();
-    std::process::exit(INTERRUPTED.into());
+    std::process::exit(status);
 }
 
 /// What stays of the work, now that it has ended by itself.

@@ -162,6 +162,16 @@ impl Token {
         (!text.is_empty()).then(|| Self(text.to_owned()))
     }
 
+    /// The token of a run: that which was typed, else that of the environment variable FRAGSCALE_NODE_TOKEN, which other
+    /// users of the computer do not see.
+    pub fn typed_or_set(typed: &str) -> Option<Self> {
+        Self::first_of(typed, std::env::var("FRAGSCALE_NODE_TOKEN").ok())
+    }
+
+    fn first_of(typed: &str, set: Option<String>) -> Option<Self> {
+        Self::typed(typed).or_else(|| Self::typed(&set?))
+    }
+
     /// A text of a node without the token, as it is and as it stands in a URL: nodes repeat what they were sent.
     pub(crate) fn hidden_in(&self, text: &str) -> String {
         let mut hidden = text.replace(&self.0, "***");
@@ -196,6 +206,15 @@ pub(crate) fn percent_encoded(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_token_is_typed_or_set() {
+        let set = || Some("set".to_owned());
+        assert_eq!(Token::first_of("typed", set()), Token::typed("typed"));
+        assert_eq!(Token::first_of(" ", set()), Token::typed("set"));
+        assert_eq!(Token::first_of("", Some(String::new())), None);
+        assert_eq!(Token::first_of("", None), None);
+    }
 
     #[test]
     fn addresses_are_read_as_they_are_typed() {

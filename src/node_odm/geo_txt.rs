@@ -82,6 +82,7 @@ mod tests {
             lens: None,
             time: None,
             size: (4000, 3000),
+            is_turned: false,
             place,
             relative_altitude: None,
             laser_range: None,

@@ -5,7 +5,9 @@
 //! limits     how long is waited, how much is taken
 //! calls/     calls to a node, and what can go wrong with them
 //! options    what is asked of OpenDroneMap, held against what the node knows
+//! outputs    which files are asked for, by these options
 //! geo_txt    where photos were taken, as OpenDroneMap reads it
+//! names      what photos are called there, and back
 //! sent       all that is sent
 //! upload     several files at once, again where the line fails
 //! task       begun, watched, called off
@@ -28,7 +30,9 @@ mod address;
 mod calls;
 mod geo_txt;
 mod limits;
+mod names;
 mod options;
+mod outputs;
 mod place;
 mod results;
 mod run;
@@ -54,7 +58,7 @@ use self::calls::client::Client;
 use self::calls::{answers, client, line, multipart, patience, tls, trouble};
 use self::files::FileError;
 use self::jobs::Progress;
-use self::place::Place;
+use self::place::{Place, told};
 use self::reconstruct::{Reconstructed, check_new_folder};
 use self::run::Run;
 use self::sent::Sent;
@@ -111,7 +115,7 @@ pub fn reconstruct_on_node(
     };
     let options = run.greet().map_err(|trouble| trouble.at(node))?;
     // From here on something is left where it breaks off.
-    let told = format!("NodeODM at {node}\n{options}\n{}", run.sent.told());
+    let told = told(&node.to_string(), &options, &run.sent.told());
     let (place, foreign, ours) = Place::take(&request.to, &request.photos, &told)?;
     let mut warnings = run.sent.warnings.clone();
     warnings.extend(foreign.and_then(|task| run.remove_foreign(&task)));

@@ -8,6 +8,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::fault::Fault;
+use crate::outputs::needs;
 
 /// An option as the user typed it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -74,8 +75,39 @@ pub(crate) struct Known {
     domain: Value,
 }
 
-/// Saves hours of work that no scale needs, where the node knows it and the user did not say otherwise.
+/// Saves hours of work that no scale needs, where the node knows it and the user neither says otherwise nor asks for
+/// what is made of it.
 const USUAL: [(&str, &str); 2] = [("skip-3dmodel", "true"), ("skip-orthophoto", "true")];
+
+/// How the options of a task that was begun differ from those of now, as a clause: "with dsm=true and without
+/// pc-quality=low". `None` where they do not.
+pub(crate) fn difference(before: &str, now: &str) -> Option<String> {
+    let listed = |text: &str| -> Vec<String> {
+        let options: Vec<Value> = serde_json::from_str(text).unwrap_or_default();
+        let shown = |option: &Value| {
+            let value = match option.get("value")? {
+                Value::String(text) => text.clone(),
+                other => other.to_string(),
+            };
+            Some(format!("{}={value}", option.get("name")?.as_str()?))
+        };
+        options.iter().filter_map(shown).collect()
+    };
+    let (before, now) = (listed(before), listed(now));
+    let only_in = |these: &[String], those: &[String]| {
+        let only: Vec<&str> = (these.iter())
+            .filter(|option| !those.contains(option))
+            .map(String::as_str)
+            .collect();
+        only.join(", ")
+    };
+    match (only_in(&before, &now), only_in(&now, &before)) {
+        (with, without) if with.is_empty() && without.is_empty() => None,
+        (with, without) if without.is_empty() => Some(format!("with {with}")),
+        (with, without) if with.is_empty() => Some(format!("without {without}")),
+        (with, without) => Some(format!("with {with} and without {without}")),
+    }
+}
 
 /// What is sent to `/task/new/init` as `options`.
 ///
@@ -96,7 +128,13 @@ pub(crate) fn to_send(asked: &[Asked], known: &[Known]) -> Result<String, Fault>
         sent.push(json!({ "name": name, "value": value(option, known)? }));
     }
     for (name, value) in USUAL {
-        let is_asked = asked.iter().any(|option| option.name == name);
+        let is_asked = asked.iter().any(|option| {
+            let value = match option.value.as_str() {
+                "false" | "0" => Value::Bool(false),
+                _ => Value::Bool(true),
+            };
+            option.name == name || needs(&option.name, &value, name)
+        });
         let is_known = known
             .iter()
             .any(|known| known.name == name && known.kind == "bool");
@@ -205,6 +243,41 @@ mod tests {
                 {"name": "skip-3dmodel", "value": true},
             ])
         );
+    }
+
+    /// An orthophoto's picture is made of an orthophoto.
+    #[test]
+    fn what_is_asked_is_not_left_out() {
+        let known: Vec<Known> = serde_json::from_str(
+            r#"[{"name":"orthophoto-png","type":"bool"},{"name":"gltf","type":"bool"},{"name":"skip-3dmodel","type":"bool"},
+                {"name":"skip-orthophoto","type":"bool"}]"#,
+        )
+        .unwrap();
+        let sent = |asked: &str| to_send(&[Asked::parse(asked).unwrap()], &known).unwrap();
+        assert_eq!(
+            sent("orthophoto-png"),
+            r#"[{"name":"orthophoto-png","value":true},{"name":"skip-3dmodel","value":true}]"#
+        );
+        assert!(!sent("gltf").contains("skip-3dmodel"));
+        assert!(sent("orthophoto-png=false").contains("skip-orthophoto"));
+    }
+
+    #[test]
+    fn differences_are_named() {
+        let (high, low) = (
+            r#"[{"name":"pc-quality","value":"high"},{"name":"dsm","value":true}]"#,
+            r#"[{"name":"dsm","value":true},{"name":"pc-quality","value":"low"}]"#,
+        );
+        let said = difference(high, low);
+        assert_eq!(
+            said.as_deref(),
+            Some("with pc-quality=high and without pc-quality=low")
+        );
+        assert_eq!(
+            difference("[]", r#"[{"name":"dsm","value":true}]"#).as_deref(),
+            Some("without dsm=true")
+        );
+        assert_eq!(difference(high, high), None);
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! ```text
 //! photos.txt   what was sent, and with which options: another run of the same goes on
 //! task.json    which task of which node it is; never the token
+//! arrived.txt  the files that the node has said it has, before it was told to begin
 //! log.txt      the node's messages
 //! all.zip      the results, while they come
 //! odm/         the same, while they are unpacked
@@ -11,9 +12,11 @@
 //! lock         held by the run that works here
 //! ```
 
-use std::fs::{self, File};
+use std::collections::HashSet;
+use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +24,7 @@ use crate::client::unwritten;
 use crate::fault::Fault;
 use crate::files::{self, FileError, Inputs, Kind};
 use crate::formats::UNFINISHED;
+use crate::options::difference;
 use crate::reconstruct::{empty_work, lock_work};
 
 /// A task that a run has begun.
@@ -28,6 +32,9 @@ use crate::reconstruct::{empty_work, lock_work};
 pub(crate) struct Remembered {
     pub(crate) node: String,
     pub(crate) uuid: String,
+    /// Whether the node has said that it has everything: until then it knows no task of that name.
+    #[serde(default)]
+    pub(crate) committed: bool,
 }
 
 /// The folder of a run.
@@ -45,15 +52,19 @@ pub(crate) struct Place {
 }
 
 const TASK: &str = "task.json";
+const ARRIVED: &str = "arrived.txt";
 const PLACED: &str = "placed";
 pub(crate) const LOG: &str = "log.txt";
+pub(crate) const ARCHIVE: &str = "all.zip";
+pub(crate) const ODM: &str = "odm";
 
 impl Place {
     /// Takes the folder for a run of `told`. Unfinished work of something else is thrown away; the task that it
     /// had on a node is returned first, that of the same photos second.
     ///
     /// # Errors
-    /// Where the folder cannot be written, or another run works in it.
+    /// Where the folder cannot be written, another run works in it, or the node has a task of the same photos that was
+    /// begun with other options: nobody forgets one in order to begin anew.
     pub(crate) fn take(
         to: &Path,
         photos: &Path,
@@ -71,9 +82,20 @@ impl Place {
             lock,
         };
         let before = place.remembered();
-        let is_same = fs::read_to_string(&of).is_ok_and(|text| text == told);
-        if is_same {
+        let told_before = fs::read_to_string(&of).unwrap_or_default();
+        if told_before == told {
             return Ok((place, None, before));
+        }
+        if let Some(task) = &before
+            && let Some(difference) = other_options(&told_before, told)
+        {
+            let what = format!("the task that the node works on was asked {difference}");
+            let remedy = format!(
+                "give the same options, or remove {} (and the task {} on the node) to begin anew",
+                place.work.display(),
+                task.uuid
+            );
+            return Err(FileError::new(to, Fault::new(what, remedy)));
         }
         empty_work(&place.work).map_err(|error| unwritten(&place.work, &error))?;
         place.write("photos.txt", told.as_bytes())?;
@@ -98,6 +120,16 @@ impl Place {
             Ok(file) => Ok((file, path)),
             Err(error) => Err(unwritten(&path, &error)),
         }
+    }
+
+    /// Takes results away that are none, or not whole.
+    pub(crate) fn throw_away(&self, name: &str) {
+        let path = self.file(name);
+        // What is left over is thrown away by the next run.
+        let _ = match path.is_dir() {
+            true => fs::remove_dir_all(&path),
+            false => fs::remove_file(&path),
+        };
     }
 
     /// A folder of unfinished work that is not there.
@@ -158,7 +190,28 @@ impl Place {
     /// Forgets it: a second run begins anew.
     pub(crate) fn forget(&self) {
         // What is left of it is found out to be gone by the next run.
+        let _ = fs::remove_file(self.file(ARRIVED));
         let _ = fs::remove_file(self.file(TASK));
+    }
+
+    /// Which files of the remembered task the node has.
+    ///
+    /// # Errors
+    /// Where that cannot be written down.
+    pub(crate) fn arrived(&self) -> Result<ArrivedFiles, FileError> {
+        let path = self.file(ARRIVED);
+        let text = fs::read_to_string(&path).unwrap_or_default();
+        // A last line that was cut off names no file.
+        let lines = text
+            .split_inclusive('\n')
+            .filter_map(|line| line.strip_suffix('\n'));
+        let before = lines.map(str::to_owned).collect();
+        let opened = OpenOptions::new().append(true).create(true).open(&path);
+        let file = opened.map_err(|error| unwritten(&path, &error))?;
+        Ok(ArrivedFiles {
+            before,
+            file: Mutex::new(file),
+        })
     }
 
     /// Throws the node's messages away: nobody asks why a task ended that they cancelled.
@@ -189,6 +242,45 @@ impl Place {
             // Only an empty one goes.
             let _ = fs::remove_dir(&self.to);
         }
+    }
+}
+
+/// What is told of a run: its node, its options, and all that is sent.
+pub(crate) fn told(node: &str, options: &str, sent: &str) -> String {
+    format!("NodeODM at {node}\n{options}\n{sent}")
+}
+
+/// How the options of two runs differ that are the same otherwise.
+fn other_options(before: &str, now: &str) -> Option<String> {
+    let parts = |text: &str| -> Option<[String; 3]> {
+        let (node, rest) = text.split_once('\n')?;
+        let (options, sent) = rest.split_once('\n')?;
+        Some([node.to_owned(), options.to_owned(), sent.to_owned()])
+    };
+    let [node, options, sent] = parts(before)?;
+    let [node_now, options_now, sent_now] = parts(now)?;
+    (node == node_now && sent == sent_now)
+        .then(|| difference(&options, &options_now))
+        .flatten()
+}
+
+/// The files that a node has said it has, written down as it says so.
+pub(crate) struct ArrivedFiles {
+    before: HashSet<String>,
+    file: Mutex<File>,
+}
+
+impl ArrivedFiles {
+    /// Whether a run before this one sent it.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.before.contains(name)
+    }
+
+    /// The node has it.
+    pub(crate) fn add(&self, name: &str) {
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        // What is not written down is sent twice, which the counting of photos finds.
+        let _ = file.write_all(format!("{name}\n").as_bytes());
     }
 }
 

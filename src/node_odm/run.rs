@@ -9,12 +9,13 @@ use crate::fault::Fault;
 use crate::files::FileError;
 use crate::jobs::Progress;
 use crate::options::{Known, to_send};
+use crate::outputs::outputs;
 use crate::patience::{patiently, wait};
-use crate::place::{Log, Place, Remembered};
+use crate::place::{ARCHIVE, Log, ODM, Place, Remembered};
 use crate::reconstruct::{Reconstructed, name_of};
 use crate::results;
 use crate::sent::Sent;
-use crate::task::{Outcome, call_off, info, init, send, watch};
+use crate::task::{Outcome, call_off, has_results, info, init, send, stays, watch};
 use crate::trouble::Trouble;
 use crate::unzip::unzip;
 
@@ -76,7 +77,7 @@ impl Run<'_> {
         let limits = &self.request.limits;
         let mut log = Log::begin(place).map_err(Trouble::Here)?;
         let mut uuid = match before {
-            Some(task) => self.goes_on(&task.uuid, place)?,
+            Some(task) => self.goes_on(&task, place)?,
             None => None,
         };
         for attempt in 1.. {
@@ -99,7 +100,7 @@ impl Run<'_> {
                 outcome => outcome?,
             };
             match outcome {
-                Outcome::Completed => return self.fetch(&task, place, warnings),
+                Outcome::Completed => return self.fetch(&task, options, place, warnings),
                 Outcome::Failed(fault) => {
                     self.remove(&task, place, warnings);
                     return Err(Trouble::Final(fault));
@@ -120,11 +121,20 @@ impl Run<'_> {
     }
 
     /// The task of a run before, if the node still has it and it is worth going on with.
-    fn goes_on(&self, uuid: &str, place: &Place) -> Result<Option<String>, Trouble> {
+    fn goes_on(&self, task: &Remembered, place: &Place) -> Result<Option<String>, Trouble> {
         let limits = &self.request.limits;
+        let uuid = &task.uuid;
         let info = patiently(limits, self.progress, || info(&self.client, uuid));
         let is_over = match info {
             Ok(info) => matches!(info.state(), Some(State::Failed | State::Cancelled)),
+            // As long as it was not told to begin, a node keeps files, and knows no task.
+            Err(Trouble::Unknown) if !task.committed => {
+                return match self.hand_over(uuid, place) {
+                    Ok(()) => Ok(Some(uuid.clone())),
+                    Err(Trouble::Unknown) => Ok(None),
+                    Err(trouble) => Err(trouble),
+                };
+            }
             Err(Trouble::Unknown) => {
                 place.forget();
                 return Ok(None);
@@ -132,7 +142,8 @@ impl Run<'_> {
             Err(trouble) => return Err(trouble),
         };
         if !is_over {
-            return Ok(Some(uuid.to_owned()));
+            self.remember(uuid, true, place)?;
+            return Ok(Some(uuid.clone()));
         }
         self.remove(uuid, place, &mut Vec::new());
         Ok(None)
@@ -144,21 +155,43 @@ impl Run<'_> {
         self.progress.stage("beginning a task on the node");
         let name = name_of(&self.request.photos);
         let uuid = init(&self.client, &name, options, limits, self.progress)?;
+        // What has arrived of another is nothing of this one.
+        place.forget();
+        self.remember(&uuid, false, place)?;
+        self.hand_over(&uuid, place).map(|()| uuid)
+    }
+
+    fn remember(&self, uuid: &str, committed: bool, place: &Place) -> Result<(), Trouble> {
         let task = Remembered {
             node: self.request.node.to_string(),
-            uuid: uuid.clone(),
+            uuid: uuid.to_owned(),
+            committed,
         };
-        place.remember(&task).map_err(Trouble::Here)?;
-        match send(&self.client, &uuid, &self.sent, limits, self.progress) {
-            Ok(()) => Ok(uuid),
-            // It is called off by whoever looks at the trouble.
-            Err(Trouble::Cancelled) => Err(Trouble::Cancelled),
+        place.remember(&task).map_err(Trouble::Here)
+    }
+
+    /// Sends what a task lacks and lets the node begin. It stays remembered where a second run may go on with it.
+    fn hand_over(&self, uuid: &str, place: &Place) -> Result<(), Trouble> {
+        let limits = &self.request.limits;
+        let arrived = place.arrived().map_err(Trouble::Here)?;
+        let what = (&self.sent, &arrived);
+        match send(&self.client, uuid, what, limits, self.progress) {
+            Ok(()) => self.remember(uuid, true, place),
+            Err(Trouble::Passing(fault)) => {
+                let remedy = format!(
+                    "when it answers again, start it once more: it goes on with what the node has (what that is lies in {})",
+                    place.work.display()
+                );
+                Err(Trouble::Final(Fault::new(fault.what, remedy)))
+            }
+            // Whoever looks at the trouble calls it off; what lies here may be mended.
+            Err(trouble @ (Trouble::Cancelled | Trouble::Here(_))) => Err(trouble),
             Err(trouble) => {
-                // Half of the photos are nothing to go on with.
+                // It said no for good.
                 let _ = call_off(
                     &self.request.node,
                     self.request.token.as_ref(),
-                    &uuid,
+                    uuid,
                     limits,
                 );
                 place.forget();
@@ -183,7 +216,7 @@ impl Run<'_> {
 
     /// A task of other photos that was begun in the folder: removed where its node is the one that was typed.
     pub(crate) fn remove_foreign(&self, task: &Remembered) -> Option<String> {
-        let Remembered { node, uuid } = task;
+        let Remembered { node, uuid, .. } = task;
         if *node == self.request.node.to_string() {
             let removed = call_off(
                 &self.request.node,
@@ -202,19 +235,43 @@ impl Run<'_> {
     fn fetch(
         &self,
         uuid: &str,
+        options: &str,
         place: &Place,
         warnings: &mut Vec<String>,
     ) -> Result<Reconstructed, Trouble> {
-        let archive = self.download(uuid, place)?;
-        let odm = place.fresh("odm").map_err(Trouble::Here)?;
-        unzip(&archive, &odm, &self.request.limits, self.progress)?;
-        let made = results::flight(place, &self.sent, &self.request.photos, self.progress);
-        let made = made.map_err(|error| match self.progress.is_cancelled() {
-            true => Trouble::Cancelled,
-            false => Trouble::Here(error),
+        let made = self.flight(uuid, options, place);
+        let made = made.map_err(|trouble| {
+            // They are fetched from their beginning, whatever they were.
+            place.throw_away(ARCHIVE);
+            place.throw_away(ODM);
+            match trouble {
+                Trouble::Worthless(fault) => {
+                    let remedy = format!(
+                        "{}; to begin anew, remove {} and the task {uuid} on the node",
+                        fault.remedy,
+                        place.work.display()
+                    );
+                    Trouble::Final(Fault::new(fault.what, remedy))
+                }
+                other => other,
+            }
         })?;
+        // It is one that can be read: nobody needs the node's any more.
         self.remove(uuid, place, warnings);
         Ok(made)
+    }
+
+    /// The flight that a task's results are, on the disk.
+    fn flight(&self, uuid: &str, options: &str, place: &Place) -> Result<Reconstructed, Trouble> {
+        let archive = self.download(uuid, place)?;
+        let odm = place.fresh(ODM).map_err(Trouble::Here)?;
+        let limits = &self.request.limits;
+        unzip(&archive, &odm, &outputs(options), limits, self.progress)?;
+        let made = results::flight(place, &self.sent, &self.request.photos, self.progress);
+        made.map_err(|trouble| match self.progress.is_cancelled() {
+            true => Trouble::Cancelled,
+            false => trouble,
+        })
     }
 
     /// Fetches the archive, from its beginning where it broke off: nodes take no notice of ranges.
@@ -226,7 +283,7 @@ impl Run<'_> {
         loop {
             attempt += 1;
             self.progress.stage("fetching the results");
-            let (mut file, archive) = place.create("all.zip").map_err(Trouble::Here)?;
+            let (mut file, archive) = place.create(ARCHIVE).map_err(Trouble::Here)?;
             let moved = |came: u64, of: Option<u64>| {
                 // (The line looks by itself whether it is wanted.)
                 let _ = self.progress.advance(came, of.unwrap_or(u64::MAX));
@@ -253,12 +310,17 @@ impl Run<'_> {
             return trouble.at(node);
         };
         self.progress.stage("cancelling the task on the node");
-        let called_off = call_off(
-            node,
-            self.request.token.as_ref(),
-            &task.uuid,
-            &self.request.limits,
-        );
+        let (token, limits) = (self.request.token.as_ref(), &self.request.limits);
+        let called_off = match has_results(node, token, &task.uuid, limits) {
+            Ok(true) => {
+                // Hours of somebody's computer.
+                let what = "the task has ended on the node, which keeps its results";
+                let fault = Fault::new(what, "start it once more: it fetches them");
+                return FileError::new(Path::new(&node.to_string()), fault);
+            }
+            Ok(false) | Err(Trouble::Unknown) => call_off(node, token, &task.uuid, limits),
+            Err(trouble) => Err(stays(trouble, &task.uuid, node)),
+        };
         let fault = match called_off {
             Ok(said) => {
                 place.forget();

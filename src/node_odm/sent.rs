@@ -1,17 +1,17 @@
 //! What goes to a node: photos, where they were taken, control points.
 //!
-//! Whatever the node makes of a file's name comes back in its results, by which the photos are found again. NodeODM
-//! turns slashes into underscores, and OpenDroneMap's lists are apart by blanks: so names of photos have to be of
-//! letters, digits, `-`, `_` and `.`.
+//! The user's own lists go along under the names that NodeODM knows them by, in the photos' names on the node
+//! (`names`): `geo.txt` and `image_groups.txt`, whatever their case, and control points.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::fault::{Fault, first_names};
-use crate::files::{FileError, last_segment, read_small};
+use crate::fault::Fault;
+use crate::files::{FileError, read_small};
 use crate::formats::photos::photo_metadata;
 use crate::geo_txt::geo_txt;
 use crate::jobs::Progress;
+use crate::names::Names;
 use crate::opening::read_control;
 use crate::reconstruct::PhotoSet;
 
@@ -19,6 +19,8 @@ use crate::reconstruct::PhotoSet;
 pub(crate) struct Sent {
     /// The photos.
     pub(crate) set: PhotoSet,
+    /// What they are called on the node.
+    pub(crate) names: Names,
     /// In the order of their sending.
     pub(crate) files: Vec<SentFile>,
     /// What is to be said, one sentence each.
@@ -42,6 +44,8 @@ pub(crate) enum Origin {
 
 /// Where photos were taken; NodeODM knows it by this name.
 const GEO: &str = "geo.txt";
+/// Which photos are reconstructed together, of surveys that a cluster splits.
+const GROUPS: &str = "image_groups.txt";
 /// Control points.
 const GCP: &str = "gcp_list.txt";
 /// A list of places or points has some lines a photo.
@@ -51,50 +55,38 @@ impl Sent {
     /// Looks what a folder of photos holds, with the control points of a file, or of the folder's `gcp_list.txt`.
     ///
     /// # Errors
-    /// Where fewer than three photos can be read, names cannot be sent, or a list is none.
+    /// Where fewer than three photos can be read, or a list is none or of other photos.
     pub(crate) fn read(
         folder: &Path,
         control: Option<&Path>,
         progress: &Progress,
     ) -> Result<Self, FileError> {
-        let at = |fault| FileError::new(folder, fault);
         let set = PhotoSet::read(folder, None, progress)?;
-        let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-        let odd: Vec<&str> = (set.photos.iter())
-            .map(|photo| photo.name.as_str())
-            .filter(|name| !name.chars().all(is_plain))
-            .collect();
-        if !odd.is_empty() {
-            let what = format!(
-                "a node changes the names of {} of {} photos ({})",
-                odd.len(),
-                set.photos.len(),
-                first_names(&odd)
-            );
-            return Err(at(Fault::new(
-                what,
-                "rename them, of letters A to Z, digits, - and _ alone",
-            )));
-        }
+        let names = Names::of(set.photos.iter().map(|photo| photo.name.as_str()));
         let mut files = Vec::new();
-        for photo in &set.photos {
+        for (photo, name) in set.photos.iter().zip(names.sent()) {
             let size = fs::metadata(&photo.path).map_err(|error| {
                 let what = format!("it cannot be read ({error})");
                 FileError::new(&photo.path, Fault::new(what, "check the disk"))
             })?;
             files.push(SentFile {
-                name: photo.name.clone(),
-                kind: kind_of(&photo.name),
+                name: name.to_owned(),
+                kind: kind_of(name),
                 from: Origin::Path(photo.path.clone()),
                 size: size.len(),
             });
         }
         let mut sent = Self {
             set,
+            names,
             files,
             warnings: Vec::new(),
         };
         sent.add_places(folder)?;
+        if let Some(own) = own_list(folder, GROUPS) {
+            let text = sent.own_text(&own, "list of groups")?;
+            sent.add(GROUPS, text);
+        }
         let beside = folder.join(GCP);
         match control {
             Some(path) => sent.add_control(path)?,
@@ -115,20 +107,33 @@ impl Sent {
 
     /// The folder's own `geo.txt`, or one of what the photos say.
     fn add_places(&mut self, folder: &Path) -> Result<(), FileError> {
-        let own = folder.join(GEO);
-        if own.is_file() {
-            let text = read_small(&own, LIST, "list of places", "name a smaller one")?;
+        if let Some(own) = own_list(folder, GEO) {
+            let text = self.own_text(&own, "list of places")?;
             self.add(GEO, text);
             return Ok(());
         }
         let mut photos = Vec::new();
-        for photo in &self.set.photos {
-            photos.push((photo.name.as_str(), photo_metadata::read_file(&photo.path)?));
+        for (photo, name) in self.set.photos.iter().zip(self.names.sent()) {
+            photos.push((name, photo_metadata::read_file(&photo.path)?));
         }
         if let Some(text) = geo_txt(photos.iter().map(|(name, photo)| (*name, photo))) {
             self.add(GEO, text.into_bytes());
         }
         Ok(())
+    }
+
+    /// A list of the user's whose lines begin with a photo's name.
+    fn own_text(&self, path: &Path, what: &str) -> Result<Vec<u8>, FileError> {
+        let text = read_small(path, LIST, what, "name a smaller one")?;
+        let (text, named) = self.names.in_list(text, 0);
+        if named > 0 {
+            return Ok(text);
+        }
+        let fault = Fault::new(
+            "none of its lines begins with the name of one of the photos",
+            "write the names as the files are called, or move it elsewhere",
+        );
+        Err(FileError::new(path, fault))
     }
 
     fn add_control(&mut self, path: &Path) -> Result<(), FileError> {
@@ -143,7 +148,8 @@ impl Sent {
         let marks = list.points.iter().filter(|point| point.position.is_some());
         let marked = marks
             .flat_map(|point| &point.marks)
-            .map(|(photo, _)| last_segment(photo));
+            .map(|(photo, _)| photo.as_str());
+        // (Marks in the photos have their names by now.)
         let ours = marked.filter(|photo| names.contains(photo)).count();
         if list.crs.is_none() || ours == 0 {
             let what = match list.crs {
@@ -160,6 +166,8 @@ impl Sent {
                 .map(|warning| format!("{}: {warning}", path.display())),
         );
         let text = read_small(path, LIST, "list of control points", "name a smaller one")?;
+        // Behind place and pixel.
+        let (text, _) = self.names.in_list(text, 5);
         self.add(GCP, text);
         Ok(())
     }
@@ -187,6 +195,17 @@ impl Sent {
         };
         self.files.iter().map(line).collect()
     }
+}
+
+/// A list of the user's among the photos, whatever its case, as a node finds it.
+fn own_list(folder: &Path, name: &str) -> Option<PathBuf> {
+    let files = fs::read_dir(folder).ok()?.flatten();
+    let is_it = |path: &PathBuf| {
+        let file = path.file_name().and_then(|file| file.to_str());
+        file.is_some_and(|file| file.eq_ignore_ascii_case(name)) && path.is_file()
+    };
+    // Of several always the same.
+    files.map(|file| file.path()).filter(is_it).min()
 }
 
 fn kind_of(name: &str) -> &'static str {

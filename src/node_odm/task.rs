@@ -15,11 +15,11 @@ use crate::fault::{Fault, one_line};
 use crate::jobs::Progress;
 use crate::limits::Limits;
 use crate::multipart::Multipart;
+use crate::outputs::outputs;
 use crate::patience::{patiently, wait};
-use crate::place::Log;
+use crate::place::{ArrivedFiles, Log};
 use crate::sent::Sent;
 use crate::trouble::{FREE_SPACE, Trouble, disk_is_full};
-use crate::unzip::OUTPUTS;
 use crate::upload::upload;
 
 /// Begins a task: nothing is computed before [`send`]. Returns its name on the node.
@@ -30,7 +30,7 @@ pub(crate) fn init(
     limits: &Limits,
     progress: &Progress,
 ) -> Result<String, Trouble> {
-    let outputs = Value::from(OUTPUTS.to_vec()).to_string();
+    let outputs = Value::from(outputs(options)).to_string();
     let call = || {
         let form = Multipart::new()
             .field("name", name)
@@ -52,31 +52,61 @@ pub(crate) fn init(
     }
 }
 
-/// Sends everything and lets the node begin.
+/// Sends everything that has not arrived and lets the node begin.
+///
+/// # Errors
+/// [`Trouble::Unknown`] where the node has forgotten what it was sent, [`Trouble::Passing`] where it has not answered
+/// for as long as the limits allow: the same call goes on then.
 pub(crate) fn send(
     client: &Client<'_>,
     uuid: &str,
-    sent: &Sent,
+    (sent, arrived): (&Sent, &ArrivedFiles),
     limits: &Limits,
     progress: &Progress,
 ) -> Result<(), Trouble> {
-    upload(client, uuid, sent, limits, progress)?;
-    progress.stage("the node puts the photos in their place");
+    // A run before may have ended in the middle of that call.
+    let was_told = sent.files.iter().all(|file| arrived.has(&file.name));
+    upload(client, uuid, (sent, arrived), limits, progress)?;
+    commit(client, uuid, was_told, limits, progress)
+}
+
+/// Lets the node begin, however often that takes: the call may be lost, or its answer. A task that is known was
+/// committed; one that is not, and that nothing is left of to commit, may still be on its way into its place, where
+/// the node `was_told` before.
+fn commit(
+    client: &Client<'_>,
+    uuid: &str,
+    mut was_told: bool,
+    limits: &Limits,
+    progress: &Progress,
+) -> Result<(), Trouble> {
     let path = format!("/task/new/commit/{uuid}");
-    let committed = client.commit::<Named>(&path);
-    match committed {
-        Ok(_) => Ok(()),
-        Err(Trouble::Cancelled) => Err(Trouble::Cancelled),
-        // Its answer may have been lost, and a second call finds nothing to commit any more: a task that is known
-        // was committed.
-        Err(trouble @ (Trouble::Passing(_) | Trouble::Unknown)) => {
-            let known = patiently(limits, progress, || info(client, uuid));
-            known.map(|_| ()).map_err(|asked| match asked {
-                Trouble::Unknown => trouble,
-                other => other,
-            })
+    let began = Instant::now();
+    let mut pause = limits.shortest_pause;
+    loop {
+        progress.stage("the node puts the photos in their place");
+        let trouble = match client.commit::<Named>(&path) {
+            Ok(_) => return Ok(()),
+            Err(Trouble::Cancelled) => return Err(Trouble::Cancelled),
+            Err(trouble) => trouble,
+        };
+        was_told |= matches!(trouble, Trouble::Passing(_));
+        let known = match info(client, uuid) {
+            Ok(_) => return Ok(()),
+            Err(known) => known,
+        };
+        let is_waited_for = match (&trouble, &known) {
+            (_, Trouble::Cancelled) => return Err(Trouble::Cancelled),
+            (Trouble::Passing(_), Trouble::Passing(_) | Trouble::Unknown) => true,
+            // (What is left of a call that is at work yet is refused in the words of the node's system.)
+            (Trouble::Unknown | Trouble::Refused(_), _) => was_told,
+            _ => false,
+        };
+        if !is_waited_for || began.elapsed() >= limits.give_up {
+            return Err(trouble);
         }
-        Err(trouble) => Err(trouble),
+        wait(pause, progress)?;
+        pause = (pause * 2).min(limits.longest_pause);
     }
 }
 
@@ -128,7 +158,11 @@ pub(crate) fn watch(
         match heard_of_it {
             Ok(())
             | Err(
-                Trouble::Passing(_) | Trouble::Unknown | Trouble::Refused(_) | Trouble::Final(_),
+                Trouble::Passing(_)
+                | Trouble::Unknown
+                | Trouble::Refused(_)
+                | Trouble::Final(_)
+                | Trouble::Worthless(_),
             ) => {}
             Err(trouble) => return Err(trouble),
         }
@@ -281,6 +315,33 @@ fn failed(words: Option<&str>, log: &Log) -> Fault {
     )
 }
 
+/// Calls to a node that nobody calls off, and that take a few seconds at most: the line of the call that was called
+/// off is no good any more.
+fn last_calls<'a>(address: &'a Address, token: Option<&'a Token>, limits: &Limits) -> Client<'a> {
+    let quick = Limits {
+        idle: limits.idle.min(std::time::Duration::from_secs(5)),
+        ..*limits
+    };
+    Client::new(address, token, &quick, None)
+}
+
+/// Whether a task has ended well, so that its results are there; asked within a few seconds.
+pub(crate) fn has_results(
+    address: &Address,
+    token: Option<&Token>,
+    uuid: &str,
+    limits: &Limits,
+) -> Result<bool, Trouble> {
+    let info = info(&last_calls(address, token, limits), uuid)?;
+    Ok(info.state() == Some(State::Completed))
+}
+
+/// That a task stays on its node, and why.
+pub(crate) fn stays(trouble: Trouble, uuid: &str, address: &Address) -> String {
+    let why = trouble.at(address).fault.what;
+    format!("the task {uuid} could not be removed from the node ({why}), which may go on with it")
+}
+
 /// Cancels a task and removes it from its node, within a few seconds; says what came of that.
 pub(crate) fn call_off(
     address: &Address,
@@ -288,12 +349,7 @@ pub(crate) fn call_off(
     uuid: &str,
     limits: &Limits,
 ) -> Result<String, String> {
-    // (The line of the call that was called off is no good any more, and nobody calls this off.)
-    let quick = Limits {
-        idle: limits.idle.min(std::time::Duration::from_secs(5)),
-        ..*limits
-    };
-    let client = Client::new(address, token, &quick, None);
+    let client = last_calls(address, token, limits);
     let cancelled = client.name_task("/task/cancel", uuid);
     let removed = client.name_task("/task/remove", uuid);
     match (cancelled, removed) {
@@ -305,12 +361,7 @@ pub(crate) fn call_off(
         (Ok(()), Err(Trouble::Unknown)) => {
             Ok("the task on the node was cancelled and removed".to_owned())
         }
-        (_, Err(trouble)) => {
-            let why = trouble.at(address).fault.what;
-            Err(format!(
-                "the task {uuid} could not be removed from the node ({why}), which may go on with it"
-            ))
-        }
+        (_, Err(trouble)) => Err(stays(trouble, uuid, address)),
     }
 }
 

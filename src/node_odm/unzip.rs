@@ -15,45 +15,22 @@ use crate::client::unwritten;
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::limits::Limits;
+use crate::outputs::is_asked_for;
 use crate::trouble::Trouble;
-
-/// What a flight is made of, by its place in OpenDroneMap's project: asked for by name, so that nothing else is
-/// computed into the archive. Which files are read is said in `formats/packages/odm`.
-pub(crate) const OUTPUTS: [&str; 20] = [
-    "odm_georeferencing/odm_georeferenced_model.laz",
-    "odm_georeferencing/coords.txt",
-    "odm_georeferencing/proj.txt",
-    "odm_georeferencing/alignment_matrix.json",
-    "odm_georeferencing/gcp_list.txt",
-    "opensfm/gcp_list.txt",
-    "odm_georeferencing/ground_control_points.geojson",
-    "opensfm/reconstruction.json",
-    "opensfm/reconstruction.topocentric.json",
-    "opensfm/reference_lla.json",
-    "opensfm/geocoords_transformation.txt",
-    "opensfm/exported_geocoords.txt",
-    "opensfm/tracks.csv",
-    "odm_report/shots.geojson",
-    "odm_report/stats.json",
-    "odm_report/report.pdf",
-    "img_list.txt",
-    "images.json",
-    "cameras.json",
-    "geo.txt",
-];
 
 /// An archive's contents may be so many times as large as it is. Texts of numbers come to 10.
 const MOST_TIMES: u64 = 100;
 /// So many bytes any archive may hold.
 const AT_LEAST: u64 = 64 << 20;
 
-/// Unpacks an archive into a folder that is made. Returns how many files came out.
+/// Unpacks what lies at these places of an archive into a folder that is made. Returns how many files came out.
 ///
 /// # Errors
 /// Where it is cut off or no archive, holds what it must not, or cannot be written. The folder may be half full then.
 pub(crate) fn unzip(
     archive: &Path,
     to: &Path,
+    outputs: &[&str],
     limits: &Limits,
     progress: &Progress,
 ) -> Result<usize, Trouble> {
@@ -72,13 +49,14 @@ pub(crate) fn unzip(
         let what = format!(
             "its results hold a file that would be written outside of their folder (\"{name}\")"
         );
-        return Err(Trouble::Final(Fault::new(what, "do not trust this node")));
+        return Err(distrusted(what));
     }
     fs::create_dir_all(to).map_err(here)?;
-    let wanted: Vec<&str> = OUTPUTS
-        .into_iter()
-        .filter(|output| names.iter().any(|name| name == output))
+    let mut wanted: Vec<&String> = (names.iter())
+        .filter(|name| is_asked_for(name, outputs))
         .collect();
+    // Archives are in no order.
+    wanted.sort_unstable();
     let mut unpacked = 0;
     for (done, name) in wanted.iter().enumerate() {
         if progress.advance(done as u64, wanted.len() as u64).is_err() {
@@ -86,8 +64,9 @@ pub(crate) fn unzip(
         }
         let mut entry = archive.by_name(name).map_err(|error| broken(&error))?;
         if !entry.is_file() || entry.is_symlink() {
-            let what = format!("its results hold {name} as something that is no file");
-            return Err(Trouble::Final(Fault::new(what, "do not trust this node")));
+            return Err(distrusted(format!(
+                "its results hold {name} as something that is no file"
+            )));
         }
         let path = to.join(name);
         if let Some(folder) = path.parent() {
@@ -122,11 +101,11 @@ fn copy(
         }
         unpacked += now as u64;
         if unpacked > most {
-            let what = format!(
-                "its results would unpack to more than {} MB, {MOST_TIMES} times what was sent",
-                most >> 20
-            );
-            return Err(Trouble::Final(Fault::new(what, "do not trust this node")));
+            return Err(distrusted(format!(
+                "its results would unpack to more than {} MB, which no archive of their size does ({MOST_TIMES} times its own size is allowed, and {} MB in any case)",
+                most >> 20,
+                AT_LEAST >> 20
+            )));
         }
         if progress.is_cancelled() {
             return Err(Trouble::Cancelled);
@@ -135,6 +114,11 @@ fn copy(
         to.write_all(piece)
             .map_err(|error| Trouble::Here(unwritten(path, &error)))?;
     }
+}
+
+/// What no honest node sends.
+fn distrusted(what: String) -> Trouble {
+    Trouble::Worthless(Fault::new(what, "do not trust this node"))
 }
 
 /// Whether a name is not one below a folder, on any system.
@@ -154,6 +138,7 @@ fn broken(error: &ZipError) -> Trouble {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outputs::outputs;
     use zip::ZipWriter;
     use zip::write::SimpleFileOptions;
 
@@ -175,11 +160,12 @@ mod tests {
         let done = unzip(
             &path,
             &folder.path().join("in/odm"),
+            &outputs("[]"),
             &Limits::default(),
             &Progress::default(),
         );
         let done = done.map_err(|trouble| match trouble {
-            Trouble::Final(fault) => fault.what,
+            Trouble::Final(fault) | Trouble::Worthless(fault) => fault.what,
             other => format!("{other:?}"),
         });
         (folder, done)

@@ -285,7 +285,7 @@ fn every_fault_is_one_line_and_a_status() {
     for (fault, said) in [
         (
             ServerFault::UploadsRefused(usize::MAX),
-            "could not be sent, 5 times",
+            "it goes on with what the node has",
         ),
         (ServerFault::DiskFull, "the node's disk is full"),
         (
@@ -398,6 +398,44 @@ fn killed_it_goes_on_with_its_task() {
     );
     assert_eq!(desk.server.tasks().len(), 1);
     assert!(desk.to().join("flight.toml").is_file() && !desk.to().join("unfinished").exists());
+}
+
+/// A closed terminal and a system that shuts down are no wish to throw the node's work away.
+#[cfg(unix)]
+#[test]
+fn terminated_it_leaves_the_task() {
+    for (signal, status) in [("-HUP", 129), ("-TERM", 143)] {
+        let desk = Desk::faulty(ServerFault::NeverEnds);
+        let child = desk
+            .command(&[])
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .expect("it starts");
+        let asked = |server: &NodeServer| {
+            let calls = server.calls();
+            calls.iter().filter(|call| call.ends_with("/info")).count()
+        };
+        desk.server.wait_until(|server| asked(server) > 3);
+        let kill = Command::new("kill")
+            .args([signal, &child.id().to_string()])
+            .status();
+        assert!(kill.expect("kill is there").success());
+        let output = child.wait_with_output().expect("it ends");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(status), "{said}");
+        assert!(
+            said.starts_with("interrupted; the node may go on with the task: the same command"),
+            "{said}"
+        );
+        assert_eq!(said.lines().count(), 1, "{said}");
+        let tasks = desk.server.tasks();
+        assert!(!tasks[0].cancelled && !tasks[0].removed);
+        desk.server
+            .now_serves(|served| served.fault = ServerFault::None);
+        let output = desk.run(&[]);
+        assert_eq!(output.status.code(), Some(0));
+        assert_eq!(desk.server.tasks().len(), 1);
+    }
 }
 
 /// Ctrl+C cancels and removes the task on the node, says so, and leaves nothing.

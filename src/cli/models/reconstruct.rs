@@ -166,9 +166,6 @@ fn here(arguments: &ReconstructArguments, progress: &Progress) -> Result<Reconst
     reconstruct(&request, &*engine, progress).map_err(|error| error.to_string())
 }
 
-/// The environment variable that holds the token, unseen by other users.
-const TOKEN: &str = "FRAGSCALE_NODE_TOKEN";
-
 fn on_node(
     arguments: &ReconstructArguments,
     node: &str,
@@ -176,12 +173,11 @@ fn on_node(
 ) -> Result<Reconstructed, String> {
     let given = &arguments.node;
     let node = Address::parse(node).map_err(|fault| format!("--node: {fault}"))?;
-    let token = given.token.clone().or_else(|| std::env::var(TOKEN).ok());
     let request = NodeRequest {
         photos: arguments.photos.clone(),
         to: arguments.to.clone(),
         node,
-        token: token.as_deref().and_then(Token::typed),
+        token: Token::typed_or_set(given.token.as_deref().unwrap_or_default()),
         insecure: given.insecure,
         options: given.option.clone(),
         control_points: given.gcp.clone(),

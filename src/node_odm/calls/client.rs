@@ -139,7 +139,7 @@ impl<'a> Client<'a> {
         let said = header("content-length").and_then(|length| length.parse::<u64>().ok());
         let too_much = || {
             let what = format!("the results are larger than {} GB", most >> 30);
-            Trouble::Final(Fault::new(
+            Trouble::Worthless(Fault::new(
                 what,
                 "take fewer photos, or options that make a smaller cloud",
             ))

@@ -17,6 +17,8 @@ pub(crate) enum Trouble {
     Refused(String),
     /// It makes no sense to ask again.
     Final(Fault),
+    /// The results are none, however often they are fetched.
+    Worthless(Fault),
     /// A file on this computer.
     Here(FileError),
     /// The user cancelled.
@@ -28,7 +30,7 @@ impl Trouble {
     pub(crate) fn at(self, node: &Address) -> FileError {
         let fault = match self {
             Self::Here(error) => return error,
-            Self::Passing(fault) | Self::Final(fault) => fault,
+            Self::Passing(fault) | Self::Final(fault) | Self::Worthless(fault) => fault,
             Self::Unknown => Fault::new(
                 "the node does not know the task any more (it was started anew, or somebody removed the task)",
                 "start it once more: the photos are sent again",

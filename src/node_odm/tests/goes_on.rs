@@ -38,18 +38,48 @@ fn a_second_run_goes_on_with_the_task() {
     }
 }
 
-/// Other options or photos are another task; that of before is removed from its node.
+/// Other options are no slip of the pen: hours of the node's work are not thrown away for them.
+#[test]
+fn other_options_are_refused() {
+    let desk = Desk::faulty(ServerFault::TooShort(usize::MAX));
+    let asked = |options: &[&str]| NodeRequest {
+        options: options.iter().map(|of| Asked::parse(of).unwrap()).collect(),
+        ..desk.request()
+    };
+    desk.run_request(&asked(&["pc-quality=high"])).unwrap_err();
+    desk.server
+        .now_serves(|served| served.fault = ServerFault::None);
+    let error = desk.run().unwrap_err();
+    assert!(
+        error.contains("the task that the node works on was asked with pc-quality=high; give the same options, or remove"),
+        "{error}"
+    );
+    let error = desk.run_request(&asked(&["dsm"])).unwrap_err();
+    assert!(
+        error.contains("was asked with pc-quality=high and without dsm=true;"),
+        "{error}"
+    );
+    let [task] = &desk.server.tasks()[..] else {
+        panic!("one task")
+    };
+    assert!(!task.cancelled && !task.removed);
+    desk.run_request(&asked(&["pc-quality=high"])).unwrap();
+    assert_eq!(desk.server.tasks().len(), 1);
+}
+
+/// Other photos are another task; that of before is removed from its node.
 #[test]
 fn another_request_is_another_task() {
     let desk = Desk::faulty(ServerFault::TooShort(usize::MAX));
     desk.error();
     desk.server
         .now_serves(|served| served.fault = ServerFault::None);
-    let request = NodeRequest {
-        options: vec![Asked::parse("dsm").unwrap()],
-        ..desk.request()
-    };
-    let made = desk.run_request(&request).unwrap();
+    fs::write(
+        desk.photos().join("geo.txt"),
+        "EPSG:32615\nIMG_2.JPG 1 2 3\n",
+    )
+    .unwrap();
+    let made = desk.run().unwrap();
     let tasks = desk.server.tasks();
     assert_eq!(tasks.len(), 2);
     assert!(tasks[0].cancelled && tasks[0].removed && tasks[1].removed);

@@ -2,9 +2,13 @@
 //! (`shared/data/nodeodm`), on this computer alone. What the command says and its exit status are in
 //! `tests/command/node_odm.rs`.
 
+mod between;
 mod encrypted;
 mod faults;
 mod goes_on;
+mod hands_over;
+mod names;
+mod worth;
 
 use std::fs;
 use std::io::{Cursor, Write};
@@ -28,8 +32,33 @@ struct Desk {
 const CAMERAS: &str = r#"{"lens": {"projection_type": "brown", "width": 64, "height": 48, "focal_x": 0.8, "focal_y": 0.8,
     "c_x": 0.0, "c_y": 0.0, "k1": 0.0, "k2": 0.0, "p1": 0.0, "p2": 0.0, "k3": 0.0}}"#;
 
-/// A cloud, whose points nobody looks at here.
-const CLOUD: (&str, &str) = ("odm_georeferencing/odm_georeferenced_model.laz", "LASF");
+const CLOUD: &str = "odm_georeferencing/odm_georeferenced_model.laz";
+
+/// A LAS 1.2 of so many points (they need not be packed to be called so), as its specification says.
+fn cloud(points: u32) -> Vec<u8> {
+    let mut las = b"LASF".to_vec();
+    las.extend([0; 20]);
+    las.extend([1, 2]);
+    las.extend([0; 64]);
+    // Day and year; how long the header is, where points begin, no records; of kind 0, 20 bytes each.
+    las.extend([1, 0, 0xea, 7, 227, 0, 227, 0, 0, 0, 0, 0, 0, 0, 0, 20, 0]);
+    las.extend(points.to_le_bytes());
+    las.extend(points.to_le_bytes());
+    las.extend([0; 16]);
+    let most = f64::from(points);
+    for number in [
+        0.01, 0.01, 0.01, 0.0, 0.0, 0.0, most, 0.0, 2.0, 0.0, 0.0, 0.0,
+    ] {
+        las.extend(f64::to_le_bytes(number));
+    }
+    for point in 0..points {
+        las.extend((100 * point).to_le_bytes());
+        las.extend((100 * (point % 3)).to_le_bytes());
+        las.extend([0; 4]);
+        las.extend([0, 0, 0b1001, 0, 0, 0, 0, 0]);
+    }
+    las
+}
 
 /// OpenDroneMap's project of three photos, and things that nobody asked for.
 fn results() -> Vec<u8> {
@@ -44,21 +73,22 @@ fn results() -> Vec<u8> {
         shots.collect::<Vec<_>>().join(",")
     );
     zipped(&[
-        ("cameras.json", CAMERAS),
-        ("odm_report/shots.geojson", &shots),
-        CLOUD,
-        ("odm_orthophoto/odm_orthophoto.tif", "not asked for"),
-        ("task_output.txt", "not asked for"),
+        ("cameras.json", CAMERAS.as_bytes()),
+        ("odm_report/shots.geojson", shots.as_bytes()),
+        (CLOUD, &cloud(5)),
+        ("odm_orthophoto/odm_orthophoto.tif", b"not asked for"),
+        ("odm_dem/dsm.tif", b"heights"),
+        ("task_output.txt", b"not asked for"),
     ])
 }
 
-fn zipped(files: &[(&str, &str)]) -> Vec<u8> {
+fn zipped(files: &[(&str, &[u8])]) -> Vec<u8> {
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, text) in files {
+    for (name, bytes) in files {
         writer
             .start_file(*name, SimpleFileOptions::default())
             .unwrap();
-        writer.write_all(text.as_bytes()).unwrap();
+        writer.write_all(bytes).unwrap();
     }
     writer.finish().unwrap().into_inner()
 }
@@ -200,6 +230,8 @@ fn photos_become_a_flight() {
             (made.registered, made.photos, made.left_out.len()),
             (3, 3, 0)
         );
+        // Of the surface.
+        assert_eq!(made.points, 5);
         assert_eq!(made.flight, desk.to().join("flight.toml"));
         let messages = heard.into_inner().unwrap();
         assert!(
@@ -317,17 +349,16 @@ fn control_points_go_along() {
 #[test]
 fn what_cannot_be_sent_is_said_before_anything_is() {
     let desk = Desk::faulty(ServerFault::None);
-    fs::rename(
-        desk.photos().join("IMG_2.JPG"),
-        desk.photos().join("IMG 2.JPG"),
-    )
-    .unwrap();
+    // Places of other photos.
+    let places = desk.photos().join("geo.txt");
+    fs::write(&places, "EPSG:32615\nother.JPG 1 2 3\n").unwrap();
     let error = desk.error();
     assert!(
-        error.contains("changes the names of 1 of 3 photos (IMG 2.JPG)"),
+        error.contains("geo.txt: none of its lines begins with the name of one of the photos"),
         "{error}"
     );
-    fs::remove_file(desk.photos().join("IMG 2.JPG")).unwrap();
+    fs::remove_file(&places).unwrap();
+    fs::remove_file(desk.photos().join("IMG_2.JPG")).unwrap();
     assert!(desk.error().contains("needs three at least"));
     let there = NodeRequest {
         node: Address::parse("http://node.example:3000").unwrap(),
@@ -345,36 +376,6 @@ fn what_cannot_be_sent_is_said_before_anything_is() {
     };
     assert!(desk.run_request(&among).is_err());
     assert!(desk.server.calls().is_empty() && !desk.to().exists());
-}
-
-/// Photos of others are said, and a flight has to have points: the sparse ones at least.
-#[test]
-fn what_the_results_lack_is_said() {
-    let shots = r#"{"features": [{"properties": {"filename": "x.jpg", "camera": "lens", "translation": [0, 0, 0], "rotation": [0, 0, 0]}}]}"#;
-    let sparse = r#"[{"cameras": {"lens": {"projection_type": "brown", "width": 64, "height": 48, "focal_x": 0.8, "focal_y": 0.8,
-        "c_x": 0.0, "c_y": 0.0, "k1": 0.0, "k2": 0.0, "p1": 0.0, "p2": 0.0, "k3": 0.0}},
-        "shots": {"x.jpg": {"camera": "lens", "rotation": [0, 0, 0], "translation": [0, 0, 0]}},
-        "points": {"0": {"coordinates": [0, 0, -9], "color": [1, 2, 3]}}}]"#;
-    let project = [
-        ("cameras.json", CAMERAS),
-        ("odm_report/shots.geojson", shots),
-    ];
-    let of = |more: (&'static str, &'static str)| Served {
-        results: zipped(&[project[0], project[1], more]),
-        ..Served::default()
-    };
-    let error = Desk::new(of(("images.json", "[]"))).error();
-    assert!(error.contains("hold no points"), "{error}");
-    let made = Desk::new(of(CLOUD)).run().unwrap();
-    assert_eq!(made.registered, 0);
-    let said = "1 of the 1 photos in the node's results were not sent (x.jpg)";
-    let says = |warning: &String| warning.contains(said);
-    assert!(made.warnings.iter().any(says), "{:?}", made.warnings);
-    let made = Desk::new(of(("opensfm/reconstruction.json", sparse)))
-        .run()
-        .unwrap();
-    let says = |warning: &String| warning.contains("no dense cloud");
-    assert!(made.warnings.iter().any(says), "{:?}", made.warnings);
 }
 
 /// The whole of a folder, as names and bytes.

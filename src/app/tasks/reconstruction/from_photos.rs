@@ -158,6 +158,12 @@ impl State {
         self.from_photos.node = None;
         let (writing, opened) = (self.from_photos.writing.clone(), self.opened);
         self.from_photos.growing = None;
+        // The last line of the log stands in the bar: else "cancelled" would, of the run before.
+        let (from, into) = (request.photos.display(), request.to.display());
+        self.say(
+            Severity::Note,
+            &format!("Reconstructing {from} into {into}"),
+        );
         if node.chosen {
             self.start_on_node(request, &node);
             return;
@@ -296,7 +302,7 @@ fn on_node(of: Request, node: &NodeForm) -> Result<NodeRequest, Fault> {
         photos: of.photos,
         to: of.to,
         node: node.typed()?,
-        token: Token::typed(&node.token.0),
+        token: Token::typed_or_set(&node.token.0),
         insecure: node.insecure,
         options: Asked::parse_all(&node.options)?,
         control_points: None,
