@@ -7,6 +7,7 @@
 
 mod control_file;
 mod distances;
+mod exchanged;
 mod flight_text;
 mod georeferenced;
 mod list_world;
@@ -27,6 +28,7 @@ use std::str::FromStr;
 
 use glam::DVec3;
 
+use self::exchanged::exchanged;
 use self::georeferenced::percent;
 use self::list_world::ListWorld;
 use self::marks::MarkedPoint;
@@ -326,6 +328,16 @@ pub fn georeference_model(
              well they are known"
         ));
     }
+    if contradiction.is_some() {
+        let points: Vec<&Known> = (known.iter())
+            .filter(|known| known.kind == KnownKind::ControlPoint)
+            .collect();
+        warnings.extend(exchanged(&points).map(|[one, other]| {
+            format!(
+                "'{one}' and '{other}' look exchanged: with each other's coordinates all points fit"
+            )
+        }));
+    }
     warnings.extend(contradiction);
     warnings.extend(turned_over(&marked, &reconstruction.photos, &result));
     // In a local world there is nothing to compare, and no photo is looked into.
@@ -488,12 +500,17 @@ fn of_photos(
 /// Fits to the control points alone where they decide, else to all.
 fn by_positions(known: &[Known], points_decide: bool) -> Result<Georeferenced, Fault> {
     let decides = |known: &&Known| !points_decide || known.kind == KnownKind::ControlPoint;
-    let pairs: Vec<Pair> = known
-        .iter()
-        .filter(decides)
-        .map(|known| known.pair)
-        .collect();
-    let found = fit(&pairs)?;
+    let deciding: Vec<&Known> = known.iter().filter(decides).collect();
+    let pairs: Vec<Pair> = deciding.iter().map(|known| known.pair).collect();
+    let found = fit(&pairs).map_err(|fault| match exchanged(&deciding) {
+        Some([one, other]) => Fault {
+            remedy: format!(
+                "exchange the coordinates of '{one}' and '{other}', with which they fit"
+            ),
+            ..fault
+        },
+        None => fault,
+    })?;
     let mut used = found.used.iter();
     let positions = known
         .iter()

@@ -3,6 +3,7 @@
 use super::{PhotoSet, SurveyCamera};
 use crate::camera::{Camera, Distortion};
 use crate::fault::Fault;
+use crate::formats::photos::photo_metadata::is_another_focal;
 
 /// How far a given focal length may give way while the model grows: from then on it is kept.
 const GIVEN_FOCAL: f64 = 0.01;
@@ -18,6 +19,7 @@ impl PhotoSet {
         for its in &mut self.cameras {
             if (its.camera.width, its.camera.height) == (given.width, given.height) {
                 used = true;
+                self.warnings.extend(of_other_photos(its, given));
                 *its = SurveyCamera {
                     camera: given.clone(),
                     focal_error: Some(GIVEN_FOCAL),
@@ -42,6 +44,23 @@ impl PhotoSet {
     }
 }
 
+/// That a calibration's focal length is not what the photos state.
+fn of_other_photos(stated: &SurveyCamera, given: &Camera) -> Option<String> {
+    let error = stated.focal_error.filter(|_| !stated.is_given)?;
+    let ratio = given.fx / stated.camera.fx;
+    is_another_focal(ratio, error).then(|| {
+        format!(
+            "the given calibration has a focal length of {:.1} px, {:+.1} % from the {:.1} px that the photos of {} state ({:.1} % of error \
+             expected): check that it is theirs",
+            given.fx,
+            (ratio - 1.0) * 100.0,
+            stated.camera.fx,
+            stated.camera.name,
+            error * 100.0
+        )
+    })
+}
+
 /// Whether a calibration can be kept in COLMAP's files.
 ///
 /// # Errors
@@ -58,4 +77,54 @@ fn may_be_given(camera: &Camera) -> Result<(), Fault> {
         ),
     };
     Err(Fault::new(what, "give a calibration of OpenCV's model"))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    /// Photos that state a focal length of 3000 px to 2 %.
+    fn photos() -> PhotoSet {
+        PhotoSet {
+            photos: Vec::new(),
+            cameras: vec![SurveyCamera {
+                camera: camera(3000.0),
+                focal_error: Some(0.02),
+                is_given: false,
+            }],
+            left_out: Vec::new(),
+            warnings: Vec::new(),
+            origin: DVec3::ZERO,
+            count: 0,
+        }
+    }
+
+    fn camera(focal: f64) -> Camera {
+        Camera {
+            name: "DJI FC6310R".to_owned(),
+            width: 4000,
+            height: 3000,
+            fx: focal,
+            fy: focal,
+            cx: 2000.0,
+            cy: 1500.0,
+            skew: 0.0,
+            distortion: Distortion::None,
+        }
+    }
+
+    #[test]
+    fn a_calibration_of_another_lens_is_said() {
+        let warnings = |focal| photos().with_camera(&camera(focal)).unwrap().warnings;
+        assert_eq!(warnings(3100.0), Vec::<String>::new());
+        let [said] = &warnings(3300.0)[..] else {
+            panic!("{:?}", warnings(3300.0));
+        };
+        assert!(
+            said.contains("3300.0 px, +10.0 % from the 3000.0 px"),
+            "{said}"
+        );
+    }
 }

@@ -13,6 +13,7 @@ use crate::formats::{FAILED, MODEL, UNFINISHED};
 use crate::kept_model::{files_of, keep, kept_in};
 use crate::photo_set::PhotoSet;
 use crate::written::cannot;
+use crate::written::made_of;
 use crate::written::work_folder::{empty_work, lock_work};
 
 pub(super) const FLIGHT: &str = "flight.toml";
@@ -122,24 +123,20 @@ impl Folder {
         photos: &PhotoSet,
         engine: &dyn Engine,
     ) -> Result<(), FileError> {
-        let mut text = format!("{}\n", engine.name());
-        for given in photos.cameras.iter().filter(|camera| camera.is_given) {
-            text += &format!("{:?}\n", given.camera);
-        }
-        for photo in &photos.photos {
-            let size = fs::metadata(&photo.path).map_or(0, |file| file.len());
-            text += &format!("{} {size} {}\n", photo.camera, photo.name);
-        }
+        let text = made_of::text(photos, engine);
         let of = self.path.join(UNFINISHED);
         let written = |error: io::Error| FileError::new(&of, cannot("be written", &error));
         let model = self.path.join(MODEL);
-        let is_same = |file: &Path| fs::read_to_string(file).is_ok_and(|before| before == text);
-        if self.before.is_some() && !is_same(&model.join(OF)) {
-            let what = "there is a flight in it already, of other photos or by another engine";
-            return Err(FileError::new(&self.path, Fault::new(what, ANOTHER)));
+        if self.before.is_some() {
+            // One that cannot be read is of nothing.
+            let before = fs::read_to_string(model.join(OF)).unwrap_or_default();
+            if let Some(differs) = made_of::difference(&before, &text) {
+                let what = format!("there is a flight in it already, {differs}");
+                return Err(FileError::new(&self.path, Fault::new(what, ANOTHER)));
+            }
         }
         self.lock = Some(lock_work(&self.path, &self.work)?);
-        if !is_same(&of) {
+        if !fs::read_to_string(&of).is_ok_and(|before| before == text) {
             empty_work(&self.work).map_err(written)?;
             if let Some(sparse) = self.before.as_ref().and_then(|_| kept_in(&model)) {
                 keep(&self.work, &sparse).map_err(|fault| FileError::new(&self.work, fault))?;

@@ -3,6 +3,7 @@
 
 mod flight_files;
 mod folder;
+mod made_of;
 mod proposed;
 mod report;
 mod work_folder;

@@ -1,7 +1,7 @@
 //! OpenDroneMap's `gcp_list.txt` (docs.opendronemap.org, "Ground Control Points"; `opendm/gcp.py`).
 //!
 //! The first line names the coordinate system ("EPSG:2180", a PROJ string, "WGS84 UTM 17N"), then a
-//! line a mark, separated by tabs or spaces:
+//! line a mark, separated by tabs or spaces (others write commas, which are taken, too):
 //!
 //! ```text
 //! x y z pixel_x pixel_y image_name [point_name] [extras...]
@@ -44,10 +44,12 @@ pub(super) const NO_CRS: &str = "local";
 /// How lines begin that are comments to other programs, with what they are of behind it.
 pub(super) const OWN: &str = "#fragscale ";
 
-/// Whether a line is the one of a mark: five numbers and a name, which a point with a colour is not.
+/// Whether a line is the one of a mark: five numbers and a name, which a point with a colour is not; between commas, where tables
+/// of points have columns of any kind, a photo's name.
 pub(super) fn is_mark(line: &str) -> bool {
     let fields = split(line.trim());
-    fields.len() >= 6 && numbers_ahead(&fields) == 5
+    let is_photo = |field: &String| !line.contains(',') || is_called(field, Ending::Raw);
+    numbers_ahead(&fields) == 5 && fields.get(5).is_some_and(is_photo)
 }
 
 /// How many of the first fields are numbers.
@@ -123,12 +125,23 @@ pub(super) fn read(text: &str, crs: Option<String>) -> Result<ControlPoints, Fau
 /// From the centre of the first pixel, where the list counts from, to its corner, where we do.
 pub(super) const CORNER: f64 = 0.5;
 
-/// The fields: between tabs where there are enough of them, else between white space.
+/// The fields: between tabs where there are enough of them, between commas where those stand between numbers (as spreadsheets
+/// write them), else between white space.
 fn split(line: &str) -> Vec<String> {
     let mut tabs = Separator::Sign('\t').split(line);
     tabs.retain(|field| !field.is_empty());
     if tabs.len() >= 4 {
         return tabs;
+    }
+    let commas = Separator::Sign(',').split(line);
+    let is_number = |field: &String| field.parse::<f64>().is_ok();
+    // With a name ahead, or without.
+    if numbers_ahead(&commas) >= 3
+        || commas
+            .get(1..4)
+            .is_some_and(|xyz| xyz.iter().all(is_number))
+    {
+        return commas;
     }
     Separator::Blanks.split(line)
 }

@@ -249,6 +249,8 @@ impl Shape {
     fn of(text: &str) -> Result<Self, Fault> {
         let first = text.lines().find(|line| !line.trim().is_empty());
         let first = first.ok_or_else(|| Fault::new("it is empty", "export it again"))?;
+        // A spreadsheet writes as many commas as other lines have.
+        let first = first.trim_end().trim_end_matches(',');
         if mrk::is_mrk(first) {
             return Ok(Self::Mrk);
         }

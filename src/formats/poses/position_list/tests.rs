@@ -200,6 +200,22 @@ fn control_points_with_and_without_names() {
     assert!(control_points_from_text("EPSG:2180\n").is_err());
 }
 
+/// As spreadsheets write them: commas to the end of the first line, too, and blanks behind them. A table of points whose columns look
+/// like a mark's stays one.
+#[test]
+fn marks_between_commas() {
+    let tabs =
+        points("EPSG:2180\n4.5\t5\t6\t7\t8\tmy photo.jpg\tgcp 1\n4.5\t5\t6\t9\t8\tb.jpg\tgcp 1\n");
+    let commas =
+        points("EPSG:2180,,,,,,\n4.5,5,6,7,8,my photo.jpg,gcp 1\n4.5, 5, 6, 9, 8, b.jpg, gcp 1\n");
+    assert_eq!(commas.list, tabs.list);
+    let unmarked = points("EPSG:2180\np 1,1,2,3\n2,1,2,4\n");
+    let names: Vec<&str> = (unmarked.list.points.iter().map(|p| p.name.as_str())).collect();
+    assert_eq!(names, ["p 1", "2"]);
+    let table = points("x,y,z,accuracy xy,accuracy z,name\n1,2,3,0.1,0.2,GCP1\n");
+    assert_eq!(table.list.points[0].name, "GCP1");
+}
+
 /// A list that lost its first line is read whole, without a coordinate system; a cloud with colours is no such list.
 #[test]
 fn marks_without_a_line_of_the_coordinate_system() {

@@ -400,6 +400,44 @@ fn points_that_contradict_each_other() {
     );
 }
 
+/// Two points that have each other's coordinates are named, whether the fit is refused or made: four points are too few to
+/// outvote two.
+#[test]
+fn exchanged_points_are_named() {
+    let said = |text: &str| {
+        let list = List::new(text);
+        let found = run(&GeoreferenceRequest {
+            control_points: Some(list.path()),
+            ..GeoreferenceRequest::default()
+        });
+        found.map_or_else(|error| error.to_string(), |found| found.warnings.join("; "))
+    };
+    let [p1, p2, p3, p4] = ["6201303 411", "6201305 413.5", "6201328 409", "6201326 412"];
+    let exchange = |text: &str, one: &str, other: &str| {
+        let (x, y) = (text.replace(one, "ONE"), other);
+        x.replace(y, one).replace("ONE", y)
+    };
+    let right = marks(&POINTS, "EPSG:32632");
+    let three = marks(&POINTS[..3], "EPSG:32632");
+    for list in [&right, &three] {
+        let said = said(list);
+        assert!(!said.contains("exchange"), "{said}");
+    }
+    let (a, b) = (format!("435205 {p1} "), format!("435233 {p2} "));
+    let (c, d) = (format!("435231 {p3} "), format!("435207 {p4} "));
+    for (list, one, other, names) in [
+        (&right, &a, &b, "'p1' and 'p2'"),
+        (&right, &c, &a, "'p1' and 'p3'"),
+        (&right, &c, &d, "'p3' and 'p4'"),
+        (&three, &b, &c, "'p2' and 'p3'"),
+    ] {
+        let wrong = exchange(list, one, other);
+        assert_ne!(&wrong, list);
+        let said = said(&wrong);
+        assert!(said.contains("exchange") && said.contains(names), "{said}");
+    }
+}
+
 #[test]
 fn what_is_refused() {
     let sentence = |text: &str, crs: Option<&str>| {

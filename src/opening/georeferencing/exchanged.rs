@@ -1,0 +1,51 @@
+//! Two known positions that have each other's coordinates: named, where the others cannot say it by outvoting them.
+
+use glam::DVec3;
+
+use super::Known;
+use crate::georeference::similarity_of;
+
+/// More positions outvote two that are wrong.
+const MOST: usize = 12;
+/// How many times better all have to fit once two are exchanged, better than as they are and than with any other two.
+const BETTER: f64 = 5.0;
+
+/// The names of the two of `known` with which exchanged all fit well, and only these two.
+pub(super) fn exchanged<'a>(known: &[&'a Known]) -> Option<[&'a str; 2]> {
+    if !(3..=MOST).contains(&known.len()) {
+        return None;
+    }
+    // Coordinates of the Earth would eat the digits.
+    let middle = known.iter().map(|known| known.pair.target).sum::<DVec3>() / known.len() as f64;
+    let mut pairs: Vec<(DVec3, DVec3, f64)> = (known.iter())
+        .map(|known| (known.pair.source, known.pair.target - middle, 1.0))
+        .collect();
+    let as_they_are = off(&pairs)?;
+    let mut found = Vec::new();
+    for one in 0..pairs.len() {
+        for other in 0..one {
+            exchange(&mut pairs, one, other);
+            found.extend(off(&pairs).map(|off| (off, [other, one])));
+            exchange(&mut pairs, one, other);
+        }
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (best, two) = *found.first()?;
+    let next = found.get(1).map_or(f64::INFINITY, |next| next.0);
+    (best * BETTER < as_they_are.min(next)).then(|| two.map(|index| known[index].name.as_str()))
+}
+
+fn exchange(pairs: &mut [(DVec3, DVec3, f64)], one: usize, other: usize) {
+    let kept = pairs[one].1;
+    pairs[one].1 = pairs[other].1;
+    pairs[other].1 = kept;
+}
+
+/// The summed squares' root of what the positions are off their fit.
+fn off(pairs: &[(DVec3, DVec3, f64)]) -> Option<f64> {
+    let fit = similarity_of(pairs)?;
+    let squares: f64 = (pairs.iter())
+        .map(|(source, target, _)| target.distance_squared(fit.apply(*source)))
+        .sum();
+    Some(squares.sqrt())
+}
