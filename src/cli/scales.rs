@@ -41,20 +41,18 @@ pub(super) fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result
     answer_of_scales(&outputs, text, &opened, notes)
 }
 
-/// The review of a flight that is open, for its scales: no photo's colours are read.
+/// The review of a flight that is open, for its scales. Colours are compared as `check` does: a scale is trusted by what it finds, too.
+/// Of a surface of which only a part is in memory they are not.
 pub(super) fn review_of_scales(
     flight: &FlightArguments,
     opened: &Opened,
     progress: &Progress,
 ) -> Result<Review, String> {
-    let in_flight = |fault| flight.wrong(fault);
-    let (of, looked_up) = (opened.flight.clone(), opened.looked_up.clone());
-    let review = Review::of_scales(of, looked_up, &Limits::default(), progress);
-    let mut review = review.map_err(in_flight)?;
-    review.take_decisions(&opened.settings.decisions);
-    review.look(progress).map_err(in_flight)?;
-    review.compute_fields(progress).map_err(in_flight)?;
-    Ok(review)
+    let review = match opened.flight.parts().surface.is_part() {
+        true => opened.review_without_colours(&Limits::default(), progress),
+        false => opened.review(&Limits::default(), progress),
+    };
+    review.map_err(|fault| flight.wrong(fault))
 }
 
 /// The scales of a flight that was reviewed.

@@ -73,6 +73,8 @@ pub struct MetadataRead {
     pub looked_at: usize,
     /// So many of these name their camera or its focal length.
     pub telling: usize,
+    /// So many of these are shown turned by viewers.
+    pub turned: usize,
 }
 
 /// What was looked up of a flight.

@@ -62,6 +62,9 @@ impl fmt::Debug for Crs {
     }
 }
 
+/// Units that differ by a smaller share are one, written with more or fewer digits.
+const SAME_LENGTH: f64 = 1e-9;
+
 impl Crs {
     /// Understands "EPSG:n" or "EPSG:n+m" (m: heights), "ECEF", WKT 1 or 2, a PROJ string, or
     /// "WGS84 UTM 17N".
@@ -179,15 +182,19 @@ impl Crs {
     /// another one.
     pub fn heights_factor(&self) -> f64 {
         match self.kind {
-            CrsKind::Projected => self.vertical_unit_metres() / self.unit_metres(),
+            CrsKind::Projected => {
+                let factor = self.vertical_unit_metres() / self.unit_metres();
+                // One foot in two roundings.
+                let is_one = (factor - 1.0).abs() <= SAME_LENGTH;
+                if is_one { 1.0 } else { factor }
+            }
             CrsKind::Geographic | CrsKind::Geocentric => 1.0,
         }
     }
 
     /// That heights count in another unit than x and y, where they do, in words.
     pub fn heights_apart(&self) -> Option<String> {
-        let apart = (self.heights_factor() - 1.0).abs() > 1e-9;
-        apart.then(|| {
+        (self.heights_factor() != 1.0).then(|| {
             format!(
                 "{} has its heights in units of {} m, x and y in units of {} m",
                 self.name(),
@@ -383,7 +390,7 @@ impl Crs {
         let heights_agree =
             ours.name.is_none() || theirs.name.is_none() || ours.name == theirs.name;
         let units_agree =
-            (self.vertical_unit_metres() / other.vertical_unit_metres() - 1.0).abs() < 1e-9;
+            (self.vertical_unit_metres() / other.vertical_unit_metres() - 1.0).abs() <= SAME_LENGTH;
         if self.kind != other.kind || !heights_agree || !units_agree {
             return false;
         }

@@ -8,8 +8,9 @@ use std::path::Path;
 use crate::fault::{Fault, first_names};
 use crate::flight::{ColoursFound, Doubt, Evidence, Flight, LookedUp, PhotoFileState, Review};
 use crate::jobs::Progress;
-use crate::photo_checks::{Finding, photo_checks};
+use crate::photo_checks::photo_checks;
 use crate::photo_files::PhotoFile;
+use crate::photo_places::Finding;
 use crate::picture::{Agreement, Mismatch};
 
 /// Looks up what the files' headers and the places of the photos say; `files` are parallel to the
@@ -38,9 +39,16 @@ pub fn look_up(flight: &Flight, files: &[PhotoFile]) -> LookedUp {
         evidence.doubts.clone_from(&of_all);
     }
     let (of_files, metadata) = photo_checks(flight, files);
+    if metadata.turned > 0 {
+        warnings.push(format!(
+            "viewers turn {} of {} photos (their EXIF Orientation): top, bottom, left and right are those of the pixels as they are stored, and of an \
+             exported photo in every viewer",
+            metadata.turned, metadata.looked_at
+        ));
+    }
     let (of_single, of_files): (Vec<_>, Vec<_>) = of_files
         .into_iter()
-        .partition(|(doubt, _)| matches!(doubt, Doubt::OtherPlace { .. }));
+        .partition(|(doubt, _)| matches!(doubt, Doubt::OtherPlace { usual: Some(_), .. }));
     let of_photos = parts.as_read.of_photos.iter().cloned();
     let of_photos = of_photos
         .chain(shared_files(flight, files))

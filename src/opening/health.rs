@@ -75,7 +75,7 @@ impl Remedy {
             Doubt::UnitUnknown if !can_georeference => Some(Self::SetUnit),
             Doubt::UnitNotSystems { .. } => Some(Self::SetUnit),
             Doubt::UnitUnknown => Some(Self::Georeference),
-            Doubt::FlyingHeight { .. } | Doubt::LaserRange { .. } => {
+            Doubt::OtherLength { .. } | Doubt::FlyingHeight { .. } | Doubt::LaserRange { .. } => {
                 can_georeference.then_some(Self::Georeference)
             }
             Doubt::FileMissing { .. }
@@ -83,6 +83,7 @@ impl Remedy {
             | Doubt::ReducedPhotos { .. }
             | Doubt::FileSize { .. }
             | Doubt::SolvedOnOther { .. }
+            | Doubt::SmallerPhotos { .. }
             | Doubt::SameFile { .. }
             | Doubt::FileUnreadable(_) => Some(Self::AddPhotos),
             Doubt::FarFromSurface { .. }
@@ -202,6 +203,12 @@ fn coordinates(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
         let says = format!("{}: {reason}.", share(far, review));
         return of(item, Health::Bad, "two systems", says).with(Remedy::AddSurface);
     }
+    let is_of_heights = |doubt: &Doubt| matches!(doubt, Doubt::OtherHeights { .. });
+    let (apart, reason) = doubted(review, is_of_heights);
+    if apart > 0 {
+        let says = format!("{}: {reason}.", share(apart, review));
+        return of(item, Health::Bad, "two heights", says).with(Remedy::AddSurface);
+    }
     if let Some(crs) = stated.crs {
         // WKT is a page.
         let is_code = crs.len() <= 16 && !crs.contains('[');
@@ -312,6 +319,8 @@ fn exif(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
                 | Doubt::FocalLength { .. }
                 | Doubt::FlyingHeight { .. }
                 | Doubt::LaserRange { .. }
+                | Doubt::OtherPlace { .. }
+                | Doubt::OtherLength { .. }
         )
     };
     let can_georeference = stated.reconstruction.is_some();
@@ -400,7 +409,10 @@ fn photos(review: &Review) -> HealthFinding {
     let is_of_file = |doubt: &Doubt| {
         matches!(
             doubt,
-            Doubt::FileSize { .. } | Doubt::SolvedOnOther { .. } | Doubt::SameFile { .. }
+            Doubt::FileSize { .. }
+                | Doubt::SolvedOnOther { .. }
+                | Doubt::SmallerPhotos { .. }
+                | Doubt::SameFile { .. }
         )
     };
     let (wrong, reason) = doubted(review, is_of_file);

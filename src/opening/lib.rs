@@ -35,6 +35,7 @@ mod origin;
 mod outlines;
 mod photo_checks;
 mod photo_files;
+mod photo_places;
 mod second_surface;
 mod world;
 

@@ -8,7 +8,7 @@
 //!   take-off. A deviation over 5 % is said where the take-off would lie outside the levels of the
 //!   surface: a drone that rises from a quarry's floor is less high above the pile.
 //! - The distance: to the surface in the middle of the photo against the drone's laser.
-//! - The place: a photo's own receiver against its pose, where the photos' others fit theirs: two photos have changed their names.
+//! - The places: see [`crate::photo_places`].
 //!
 //! Only the headers of the files are read, of [`MOST_PHOTOS`] photos at most.
 
@@ -16,11 +16,11 @@ use std::collections::BTreeSet;
 
 use glam::{DVec2, DVec3};
 
-use crate::flight::{Doubt, Flight, MetadataRead, Photo};
+use crate::flight::{Doubt, Flight, MetadataRead};
 use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
-use crate::geodesy::Crs;
 use crate::geometry::{Ray, median};
 use crate::photo_files::PhotoFile;
+use crate::photo_places::{Described, Finding, check_lengths, check_places};
 
 /// How many photos are looked at, evenly over the flight.
 const MOST_PHOTOS: usize = 200;
@@ -31,18 +31,6 @@ const WORTH_SAYING: f64 = 0.05;
 /// The lowest flight, in metres, whose heights are compared: below it the barometer's own error is
 /// beyond 5 %.
 const LOWEST: f64 = 10.0;
-
-/// So many photos say where most are: of two that have changed their names one is off as far as the other, the other way.
-const LEAST_PLACES: usize = 3;
-/// Receivers of drones are rarely so far off, metres; where the better ones are worse, so many times as far as a quarter of them.
-const ELSEWHERE: f64 = 12.0;
-const ELSEWHERE_OF_BETTER: f64 = 8.0;
-
-/// A finding and the photos that it speaks against, by their index.
-pub(crate) type Finding = (Doubt, Vec<usize>);
-
-/// A photo with its index and what its file says of itself.
-type Described<'a> = (usize, &'a Photo, PhotoMetadata);
 
 /// Compares a flight with its photo files, which are in the order of its photos.
 pub(crate) fn photo_checks(flight: &Flight, files: &[PhotoFile]) -> (Vec<Finding>, MetadataRead) {
@@ -62,6 +50,7 @@ pub(crate) fn photo_checks(flight: &Flight, files: &[PhotoFile]) -> (Vec<Finding
     let metadata = MetadataRead {
         looked_at: described.len(),
         telling: described.iter().filter(|(.., m)| tells(m)).count(),
+        turned: described.iter().filter(|(.., m)| m.is_turned).count(),
     };
     let mut findings = check_cameras(flight, &described);
     if described.is_empty() {
@@ -69,6 +58,7 @@ pub(crate) fn photo_checks(flight: &Flight, files: &[PhotoFile]) -> (Vec<Finding
     }
     findings.extend(check_distances(flight, &described));
     findings.extend(check_places(flight, &described));
+    findings.extend(check_lengths(flight, &described));
     (findings, metadata)
 }
 
@@ -114,12 +104,22 @@ fn check_cameras(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding> {
             });
         }
         let same_size = of_camera.filter(|m| m.size == (camera.width, camera.height));
+        if let Some(of_film) = zoomed(camera.fx, same_size.clone()) {
+            found(Doubt::FocalLength {
+                camera: name.clone(),
+                focal: camera.fx,
+                ratio: camera.fx / of_film.fx,
+                source: of_film.source.in_words(),
+                error: of_film.relative_error,
+            });
+            continue;
+        }
         let stated = same_size.filter_map(|m| m.focal.first());
         let mut ratios: Vec<f64> = stated.clone().map(|stated| camera.fx / stated.fx).collect();
         let (Some(ratio), Some(stated)) = (median(&mut ratios), stated.clone().next()) else {
             continue;
         };
-        if (ratio - 1.0).abs() > stated.relative_error.max(WORTH_SAYING) {
+        if photo_metadata::is_another_focal(ratio, stated.relative_error) {
             found(Doubt::FocalLength {
                 camera: name,
                 focal: camera.fx,
@@ -130,6 +130,30 @@ fn check_cameras(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding> {
         }
     }
     findings
+}
+
+/// The share from which a 35 mm equivalent contradicts a focal length that the photo states better elsewhere: sensors that are counted
+/// across their diagonal or their width differ by less, digital zooms by more.
+const ZOOMED: f64 = 0.25;
+
+/// The 35 mm equivalent of most of these photos, where it is so far from the camera's focal length: a digital zoom cuts the middle
+/// out of the sensor, and makers leave the lens's calibration in the file as it was.
+fn zoomed<'a>(
+    fx: f64,
+    photos: impl Iterator<Item = &'a PhotoMetadata>,
+) -> Option<photo_metadata::FocalCandidate> {
+    let of_film = photos.flat_map(|photo| &photo.focal);
+    let of_film: Vec<_> = of_film
+        .filter(|stated| stated.source == photo_metadata::FocalSource::FilmEquivalent)
+        .collect();
+    let ratio = median(
+        &mut of_film
+            .iter()
+            .map(|stated| fx / stated.fx)
+            .collect::<Vec<_>>(),
+    )?;
+    let is_other = !(1.0 / (1.0 + ZOOMED)..=1.0 + ZOOMED).contains(&ratio);
+    of_film.first().filter(|_| is_other).map(|stated| **stated)
 }
 
 /// Whether a calibration's name has the maker's name in it, but not the model's.
@@ -192,38 +216,6 @@ fn check_distances(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding>
     findings
 }
 
-/// Photos whose receivers were elsewhere than their poses. What all are off, by another datum or a false origin, is not counted.
-fn check_places(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding> {
-    let parts = flight.parts();
-    let system = parts.as_read.system.as_ref();
-    let Some(crs) = system.and_then(|system| Crs::understand(&system.name).ok()) else {
-        return Vec::new();
-    };
-    let metres = parts.unit.metres();
-    let off = described.iter().filter_map(|(index, photo, metadata)| {
-        let place = crs.from_geographic(metadata.place?.place)?.truncate();
-        Some((*index, (place - photo.pose.center.truncate()) * metres))
-    });
-    let off: Vec<(usize, DVec2)> = off.collect();
-    let along = |axis: usize| median(&mut off.iter().map(|(_, off)| off[axis]).collect::<Vec<_>>());
-    let (true, Some(x), Some(y)) = (off.len() >= LEAST_PLACES, along(0), along(1)) else {
-        return Vec::new();
-    };
-    let off: Vec<(usize, f64)> = off
-        .into_iter()
-        .map(|(index, off)| (index, off.distance(DVec2::new(x, y))))
-        .collect();
-    let mut sorted: Vec<f64> = off.iter().map(|(_, off)| *off).collect();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let limit = ELSEWHERE.max(ELSEWHERE_OF_BETTER * sorted[(sorted.len() - 1) / 4]);
-    let fitting = sorted.partition_point(|off| *off <= limit);
-    let usual = median(&mut sorted[..fitting]).unwrap_or_default();
-    let elsewhere = off.into_iter().filter(|(_, off)| *off > limit);
-    elsewhere
-        .map(|(index, distance)| (Doubt::OtherPlace { distance, usual }, vec![index]))
-        .collect()
-}
-
 /// Whether the surface has the median of these levels, give or take `slack`; all in world units.
 fn has_level(flight: &Flight, levels: &[f64], slack: f64) -> bool {
     match (
@@ -255,7 +247,7 @@ mod tests {
 
     use super::*;
     use crate::camera::{Camera, Distortion, Pose};
-    use crate::flight::{FlightParts, PhotoFileState};
+    use crate::flight::{FlightParts, Photo, PhotoFileState};
     use crate::scale::{Ground, ImageKind};
     use crate::surface::{Cloud, Surface};
     use crate::units::LengthUnit;
@@ -348,6 +340,40 @@ mod tests {
         assert_eq!(against.len(), 1);
         let (doubt, photos) = &against[0];
         assert_eq!((doubt.kind(), &photos[..]), ("strange-camera", &[0, 1][..]));
+    }
+
+    /// A zoom of 2 by cutting the middle out: the lens's calibration in the file is as it was, the 35 mm equivalent is not.
+    #[test]
+    fn a_digital_zoom_is_doubted() {
+        let folder = tempfile::tempdir().unwrap();
+        let film = 24.0 / 1872.0_f64.sqrt() * 5000.0;
+        let found = |millimetres: u16| {
+            let exif = [
+                text(Tag::Make, "DJI"),
+                text(Tag::Model, "FC1"),
+                short(Tag::FocalLengthIn35mmFilm, millimetres),
+            ];
+            let xmp = packet(&format!(
+                r#"<rdf:Description drone-dji:CalibratedFocalLength="{film}" drone-dji:CalibratedOpticalCenterX="2000" drone-dji:CalibratedOpticalCenterY="1500"/>"#
+            ));
+            let mut files = files(folder.path(), ["FC1"; 2], 50.0, 50.0);
+            for file in &mut files {
+                fs::write(
+                    file.path.as_ref().unwrap(),
+                    jpeg((4000, 3000), &exif, &[&xmp]),
+                )
+                .unwrap();
+            }
+            photo_checks(&flight("DJI FC1", film, LengthUnit::Metre), &files).0
+        };
+        assert_eq!(found(24), []);
+        let [(Doubt::FocalLength { ratio, .. }, photos)] = &found(48)[..] else {
+            panic!("{:?}", found(48));
+        };
+        assert_eq!(
+            (format!("{ratio:.3}"), &photos[..]),
+            ("0.500".to_owned(), &[0, 1][..])
+        );
     }
 
     #[test]

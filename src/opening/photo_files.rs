@@ -9,7 +9,7 @@ use image::RgbImage;
 use crate::camera::Camera;
 use crate::fault::{Fault, Lacking, first_names};
 use crate::files::{FileError, read_bytes};
-use crate::flight::{Photo, PhotoFileState};
+use crate::flight::{Doubt, Photo, PhotoFileState};
 use crate::formats::Reconstruction;
 use crate::formats::photos::photo_folder::{PhotoFolder, size_of_file};
 use crate::picture::decode;
@@ -123,16 +123,19 @@ pub(crate) fn set_sizes_from_files(
 }
 
 /// Rescales each camera to the size of its photo files, where those have the same shape; photos of
-/// another shape get a trouble. What is done, and what files are missing, is said in `warnings`.
+/// another shape get a trouble. What is done, and what files are missing, is said in `warnings`; of photos with fewer pixels than
+/// their camera was calibrated for, that is returned, with their indices: a package that solves on reduced photos leaves files with
+/// more.
 pub(crate) fn fit_cameras_to_files(
     folder: &PhotoFolder<'_>,
     files: &[PhotoFile],
     cameras: &mut [Camera],
     photos: &mut [Photo],
     warnings: &mut Vec<String>,
-) {
+) -> Vec<(usize, Doubt)> {
+    let mut smaller = Vec::new();
     let Some(path) = folder.folder else {
-        return;
+        return smaller;
     };
     let mut missing = Vec::new();
     let mut sizes = Vec::with_capacity(photos.len());
@@ -183,6 +186,14 @@ pub(crate) fn fit_cameras_to_files(
                 size.0, size.1
             ));
             *camera = rescaled;
+            let of_camera = photos.iter().zip(&sizes).enumerate();
+            let fewer = of_camera.filter(|(_, (photo, its))| {
+                photo.camera == index && **its == Some(size) && size.0 < width
+            });
+            smaller.extend(fewer.map(|(photo, _)| {
+                let calibrated = (width, height);
+                (photo, Doubt::SmallerPhotos { size, calibrated })
+            }));
         }
     }
     for (photo, size) in photos.iter_mut().zip(sizes) {
@@ -202,6 +213,7 @@ pub(crate) fn fit_cameras_to_files(
             photo.trouble = Some(matter);
         }
     }
+    smaller
 }
 
 /// The most common size, of equals the first.
@@ -248,7 +260,10 @@ mod tests {
     use super::*;
     use crate::camera::{Distortion, Pose};
 
-    fn fit(camera: (u32, u32), files: &[(u32, u32)]) -> (Camera, Vec<Photo>, Vec<String>) {
+    /// The camera and its photos then, what is said, and which photos are doubted.
+    type Fitted = (Camera, Vec<Photo>, Vec<String>, Vec<(usize, Doubt)>);
+
+    fn fit(camera: (u32, u32), files: &[(u32, u32)]) -> Fitted {
         let folder = tempfile::tempdir().unwrap();
         let mut cameras = [Camera {
             name: "c".to_owned(),
@@ -279,14 +294,16 @@ mod tests {
         let mut warnings = Vec::new();
         let files = PhotoFolder::new(Some(folder.path()));
         let of_photos = files_of(&files, &photos);
-        fit_cameras_to_files(&files, &of_photos, &mut cameras, &mut photos, &mut warnings);
+        let smaller =
+            fit_cameras_to_files(&files, &of_photos, &mut cameras, &mut photos, &mut warnings);
         let [camera] = cameras;
-        (camera, photos, warnings)
+        (camera, photos, warnings, smaller)
     }
 
     #[test]
     fn the_camera_follows_the_files_for_all_its_photos() {
-        let (camera, photos, warnings) = fit((100, 50), &[(400, 200), (400, 200)]);
+        let (camera, photos, warnings, smaller) = fit((100, 50), &[(400, 200), (400, 200)]);
+        assert_eq!(smaller, []);
         assert_eq!(
             (camera.width, camera.height, camera.fx, camera.cy),
             (400, 200, 400.0, 100.0)
@@ -306,7 +323,7 @@ mod tests {
 
     #[test]
     fn another_shape_is_trouble_for_that_photo() {
-        let (camera, photos, _) = fit((100, 50), &[(100, 50), (400, 300), (100, 50), (200, 100)]);
+        let (camera, photos, ..) = fit((100, 50), &[(100, 50), (400, 300), (100, 50), (200, 100)]);
         assert_eq!(camera.width, 100);
         let troubled: Vec<bool> = photos.iter().map(|photo| photo.trouble.is_some()).collect();
         assert_eq!(troubled, [false, true, false, true, false]);
@@ -317,6 +334,18 @@ mod tests {
                 .unwrap()
                 .contains("another shape")
         );
+    }
+
+    /// Cropped or made smaller: the file does not tell.
+    #[test]
+    fn photos_with_fewer_pixels_than_calibrated_are_doubted() {
+        let (camera, _, _, smaller) = fit((400, 200), &[(300, 150), (300, 150), (400, 200)]);
+        assert_eq!(camera.width, 300);
+        let doubt = Doubt::SmallerPhotos {
+            size: (300, 150),
+            calibrated: (400, 200),
+        };
+        assert_eq!(smaller, [(0, doubt.clone()), (1, doubt)]);
     }
 
     /// Bundler's file alone, without the list of its photos.

@@ -96,7 +96,7 @@ fn bring(
                 max: world.around.center(),
             };
             if !stated {
-                return taken_to_be_in(&theirs, points, &[middle.min]).map(Some);
+                return taken_to_be_in(own, &theirs, points, &[middle.min]).map(Some);
             }
             near(points, &world.around)?;
             let text = "taken to be in the flight's own frame: neither of the two states a coordinate system";

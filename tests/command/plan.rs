@@ -531,7 +531,7 @@ fn a_real_quarry_is_planned() {
         let notes = String::from_utf8_lossy(&told.stderr).into_owned();
         assert_eq!(told.status.code(), Some(0), "{notes}");
         // Its unit was stated, and it has no photos to doubt.
-        assert!(!notes.contains("not a scale"), "{notes}");
+        assert!(!notes.contains("no scale and no length"), "{notes}");
         serde_json::from_slice(&told.stdout).unwrap()
     };
     let (turned, told) = (told(&[&flight]), told(&[&lying, "--up", "y"]));

@@ -591,4 +591,9 @@ fn swapped_photos_are_not_trusted() {
     assert_eq!(csv.matches("its colours").count(), 8, "{csv}");
     let (_, err) = run(0, &["check", text_of(folder.path())]);
     assert_eq!(err.matches("its colours").count(), 4, "{err}");
+    // And `scales`, whose table people take.
+    let scales = ["scales", text_of(folder.path()), "--format", "csv"];
+    let (csv, _) = run(0, &scales);
+    assert_eq!(csv.matches(",trust,").count(), still_trusted, "{csv}");
+    assert_eq!(csv.matches("its colours").count(), 8, "{csv}");
 }

@@ -202,7 +202,7 @@ fn what_the_command_says_is_seen_in_the_window() {
     let desk = Desk::new(Some(path));
     let doubts = desk.open().review.photo(0).expect("a photo").doubts;
     assert!(!doubts.is_empty());
-    let said = "not a scale: the model is in a frame of its own";
+    let said = "no scale and no length: the model is in a frame of its own";
     assert!(err.contains(said) && desk.says(said), "{err}");
     assert_eq!(desk.harness.state().state().scales_to_copy(), None);
     for doubt in doubts {

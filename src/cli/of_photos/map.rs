@@ -33,7 +33,7 @@ pub(in crate::cli) struct MapArguments {
     unit: OutputUnit,
     /// The side of a pixel of the ground, as 5cm or 0.2ft; without it there are about 1300 along the longer
     /// side.
-    #[arg(long, value_name = "LENGTH")]
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pixel: Option<Length>,
     /// What lies under it: the surface's relief, the flight's photos from above, the colours of the cloud's own
     /// points, or nothing.

@@ -35,7 +35,7 @@ pub(in crate::cli) struct RectifyArguments {
     #[arg(long, conflicts_with = "plane")]
     ortho: bool,
     /// The side of a pixel, as 2mm or 0.5in; without it what the photo shows at its middle, rounded.
-    #[arg(long, value_name = "LENGTH")]
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pixel: Option<Length>,
     /// Pixel size and bar are said in this unit.
     #[arg(long, value_enum, default_value = "cm")]

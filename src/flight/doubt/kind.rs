@@ -4,7 +4,7 @@
 use super::Doubt;
 
 /// All words.
-const KINDS: [&str; 38] = [
+const KINDS: [&str; 41] = [
     "no-scale",
     "off-surface",
     "no-point",
@@ -33,6 +33,9 @@ const KINDS: [&str; 38] = [
     "off-its-points",
     "same-file",
     "other-place",
+    "other-length",
+    "other-heights",
+    "smaller-photos",
     "far-from-surface",
     "under-surface",
     "strange-camera",
@@ -89,6 +92,9 @@ impl Doubt {
             Self::OffItsPoints { .. } => "off-its-points",
             Self::SameFile { .. } => "same-file",
             Self::OtherPlace { .. } => "other-place",
+            Self::OtherLength { .. } => "other-length",
+            Self::OtherHeights { .. } => "other-heights",
+            Self::SmallerPhotos { .. } => "smaller-photos",
             Self::FarFromSurface { .. } => "far-from-surface",
             Self::UnderSurface => "under-surface",
             Self::StrangeCamera { .. } => "strange-camera",

@@ -71,9 +71,10 @@ impl Doubt {
             }
             Self::Sideways { .. } => (OnPhoto::Sides, InView::Footprint),
             Self::FlatView { .. } => (OnPhoto::TopBottom, InView::FromSide),
-            Self::UnderSurface | Self::FlyingHeight { .. } | Self::LaserRange { .. } => {
-                (OnPhoto::Nothing, InView::FromSide)
-            }
+            Self::UnderSurface
+            | Self::OtherHeights { .. }
+            | Self::FlyingHeight { .. }
+            | Self::LaserRange { .. } => (OnPhoto::Nothing, InView::FromSide),
             Self::OtherColours { .. } | Self::Flipped { .. } => {
                 (OnPhoto::Nothing, InView::ThroughCamera)
             }
@@ -82,6 +83,7 @@ impl Doubt {
             | Self::UnitNotSystems { .. }
             | Self::SmallAngles { .. }
             | Self::NoRotation { .. }
+            | Self::OtherLength { .. }
             | Self::FarFromSurface { .. } => (OnPhoto::Nothing, InView::Flight),
             Self::FileMissing { .. }
             | Self::NoPhotoFolder { .. }
@@ -92,6 +94,7 @@ impl Doubt {
             | Self::OffItsPoints { .. }
             | Self::SameFile { .. }
             | Self::OtherPlace { .. }
+            | Self::SmallerPhotos { .. }
             | Self::StrangeCamera { .. }
             | Self::SeveralDevices { .. }
             | Self::OtherDevice { .. }

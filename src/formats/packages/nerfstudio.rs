@@ -77,6 +77,7 @@ struct RawFile {
     frames: Vec<RawFrame>,
     ply_file_path: Option<String>,
     applied_transform: Option<IgnoredAny>,
+    applied_scale: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -128,6 +129,12 @@ fn read(
              says how it was turned"
                 .to_owned(),
         );
+    }
+    if let Some(scale) = raw.applied_scale.filter(|scale| *scale != 1.0) {
+        found.warnings.push(format!(
+            "its frame is {scale} times as large as that of the reconstruction that it was made from (applied_scale): a unit that was \
+             stated there is not its own"
+        ));
     }
     let count = raw.frames.len();
     let mut matrices = HashMap::new();

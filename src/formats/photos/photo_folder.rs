@@ -59,8 +59,8 @@ impl<'a> PhotoFolder<'a> {
     }
 
     /// The file of a photo: its name below the folder, or the last part of its name in the folder,
-    /// whatever its case, perhaps with an ending more. Where the photo's own name has two endings
-    /// ("DJI_0025.JPG.tif"), the file may have the first alone.
+    /// whatever its case, perhaps with an ending more, or with its ending spelt otherwise (jpeg for jpg). Where the photo's own name has
+    /// two endings ("DJI_0025.JPG.tif"), the file may have the first alone.
     pub fn find(&self, photo: &str) -> Option<PathBuf> {
         let folder = self.folder?;
         let last = last_segment(photo);
@@ -79,6 +79,7 @@ impl<'a> PhotoFolder<'a> {
             .or_else(|| {
                 let mut found = std::iter::once(last.to_owned())
                     .chain(longer)
+                    .chain(spelt_otherwise(last))
                     .filter_map(in_any_case);
                 found.find(|path| path.is_file())
             })
@@ -135,6 +136,21 @@ impl<'a> PhotoFolder<'a> {
     }
 }
 
+/// The name with the other spelling of its ending. A file of another kind may be another photo: of a thermal camera beside it.
+fn spelt_otherwise(name: &str) -> Option<String> {
+    const SPELT: [[&str; 2]; 2] = [["jpg", "jpeg"], ["tif", "tiff"]];
+    let (stem, ending) = name.rsplit_once('.')?;
+    let of_kind = |[short, long]: [&str; 2]| {
+        let is = |spelt: &str| ending.eq_ignore_ascii_case(spelt);
+        match (is(short), is(long)) {
+            (true, _) => Some(format!("{stem}.{long}")),
+            (_, true) => Some(format!("{stem}.{short}")),
+            _ => None,
+        }
+    };
+    SPELT.into_iter().find_map(of_kind)
+}
+
 /// Width and height of an image file.
 ///
 /// # Errors
@@ -164,6 +180,18 @@ mod tests {
     use std::fs;
 
     use super::*;
+
+    /// One format, spelt in two ways; the same name of another format is another photo, as a thermal camera's beside it.
+    #[test]
+    fn an_ending_spelt_otherwise_is_found() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.JPEG", "b.jpg", "c.tif", "d.png"] {
+            fs::write(folder.path().join(name), "a photo").unwrap();
+        }
+        let files = PhotoFolder::new(Some(folder.path()));
+        let found = ["a.jpg", "b.jpeg", "c.TIFF", "d.jpg"].map(|name| files.find(name).is_some());
+        assert_eq!(found, [true, true, true, false]);
+    }
 
     /// A memory card's DCIM, of which a package kept the names of files alone: what two of its folders have is nobody's.
     #[test]

@@ -136,13 +136,13 @@ pub(super) fn fit(source: &mut Source) -> Result<Vec<PhotoFile>, FileError> {
         file.named_size = source.named_sizes.get(index).copied().flatten();
         file.may_be_reduced = source.may_be_reduced;
     }
-    fit_cameras_to_files(
+    source.photo_doubts.extend(fit_cameras_to_files(
         &folder,
         &photo_files,
         &mut source.cameras,
         &mut source.photos,
         &mut source.warnings,
-    );
+    ));
     Ok(photo_files)
 }
 

@@ -5,9 +5,10 @@ use glam::DVec3;
 use super::source::Source;
 use crate::fault::Fault;
 use crate::files::FileError;
+use crate::flight::Doubt;
 use crate::formats::{CloudFile, PoseCovariance};
 use crate::jobs::Progress;
-use crate::world::{Known, Way, WorldFrame, place_of_flight, taken_to_be_in};
+use crate::world::{Known, Way, WorldFrame, not_on_its_map, place_of_flight, taken_to_be_in};
 
 /// The surface in the world.
 pub(super) struct Framed {
@@ -38,12 +39,22 @@ pub(super) fn bring_to_world(
     let surface = file
         .as_ref()
         .map(|file| WorldFrame::of_cloud(file, &mut said));
-    let surface = surface.transpose().map_err(at_surface)?;
+    let mut surface = surface.transpose().map_err(at_surface)?;
     source.warn(surface_file, &said);
     let centers = source.photos.iter().map(|photo| photo.pose.center);
     let first_point = file.as_ref().and_then(|file| file.cloud.points.first());
     let middle = centers.sum::<DVec3>() / source.photos.len().max(1) as f64;
     let on_surface = first_point.copied().unwrap_or_default();
+    // Who names the world's system answers for it, and poses that have a place show what is far from it.
+    if source.named_crs.is_none() && source.poses_frame.is_as_it_is() {
+        let own = surface
+            .as_ref()
+            .and_then(|frame| not_on_its_map(frame, on_surface));
+        if let Some(own) = own {
+            source.warn(surface_file, &[own]);
+            surface = Some(WorldFrame::AsIs(None));
+        }
+    }
     let known = Known {
         named: source.named_crs.clone(),
         place: place_of_flight(&source.poses_frame, middle, surface.as_ref(), on_surface),
@@ -85,11 +96,18 @@ pub(super) fn bring_to_world(
     let poses_moved = of_poses.in_words("the poses");
     let points_moved = of_points.in_words("the points");
     source.warn(&path, poses_moved.as_slice());
+    let other_heights = surface.as_ref();
+    let other_heights = other_heights.and_then(|frame| source.poses_frame.other_heights(frame));
+    if let Some([poses, surface]) = other_heights {
+        let doubt = Doubt::OtherHeights { poses, surface };
+        source.warn(&path, &[doubt.to_string()]);
+        source.doubts.push(doubt);
+    }
     match surface {
-        Some(WorldFrame::AsIs(_)) if !source.poses_frame.is_as_it_is() => {
+        Some(own @ WorldFrame::AsIs(_)) if !source.poses_frame.is_as_it_is() => {
             let centers = source.photos.iter().map(|photo| photo.pose.center);
             let centers: Vec<DVec3> = centers.collect();
-            let said = taken_to_be_in(&world, &cloud.cloud.points, &centers);
+            let said = taken_to_be_in(&own, &world, &cloud.cloud.points, &centers);
             // A package's own surface is in its package's frame, as long as that stays.
             let said = match (said, source.surface_is_packages) {
                 (Err(fault), true) => Some(fault.what),

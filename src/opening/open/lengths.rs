@@ -42,7 +42,8 @@ fn take_unit(source: &mut Source, framed: &Framed) -> Result<(), FileError> {
     let world = &framed.world;
     let path = source.file.clone();
     let at_poses = |fault| FileError::new(&path, fault);
-    let Some(unit) = world.unit().map_err(at_poses)? else {
+    let unit = world.unit().map_err(at_poses)?;
+    let Some(unit) = unit.filter(|_| !is_of_surface_alone(source, world)) else {
         // Control points may have made the world larger.
         let package = source.package_unit.filter(|_| !framed.is_placed);
         take_package_unit(source, package);
@@ -61,6 +62,14 @@ fn take_unit(source: &mut Source, framed: &Framed) -> Result<(), FileError> {
         return Err(at_poses(Fault::new(what, remedy)));
     }
     Ok(())
+}
+
+/// Whether the world is a local frame that the surface's file alone names: a model in a frame of its own need not be in it, and
+/// counts in no unit by it.
+fn is_of_surface_alone(source: &Source, world: &WorldFrame) -> bool {
+    let model = source.reconstruction.as_ref();
+    let is_in_own_frame = model.is_some_and(|model| model.in_world.is_none());
+    is_in_own_frame && world.is_as_it_is() && matches!(source.poses_frame, WorldFrame::AsIs(None))
 }
 
 /// The unit of a world without a coordinate system: what flight.toml says, else the package.

@@ -146,12 +146,25 @@ impl Opened {
     /// # Errors
     /// Where the surface cannot be met, or the work was cancelled.
     pub fn review(&self, limits: &Limits, progress: &Progress) -> Result<Review, Fault> {
+        let mut review = self.review_without_colours(limits, progress)?;
+        compare_all_colours(&mut review, &self.photo_files, progress)?;
+        Ok(review)
+    }
+
+    /// The same, but that no photo is read.
+    ///
+    /// # Errors
+    /// Likewise.
+    pub fn review_without_colours(
+        &self,
+        limits: &Limits,
+        progress: &Progress,
+    ) -> Result<Review, Fault> {
         let (flight, looked_up) = (self.flight.clone(), self.looked_up.clone());
         let mut review = Review::of_scales(flight, looked_up, limits, progress)?;
         review.take_decisions(&self.settings.decisions);
         review.look(progress)?;
         review.compute_fields(progress)?;
-        compare_all_colours(&mut review, &self.photo_files, progress)?;
         Ok(review)
     }
 }

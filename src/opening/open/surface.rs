@@ -21,7 +21,7 @@ pub(super) fn read(
 ) -> Result<Option<CloudFile>, FileError> {
     if options.surface.is_some() {
         // What is said of the flight's own file does not hold for another.
-        source.settings.surface_up = UpAxis::Z;
+        source.settings.surface_up = options.surface_up.unwrap_or(UpAxis::Z);
     }
     let settings = options.settings.as_ref().unwrap_or(&source.settings);
     let up = settings.surface_up;

@@ -317,7 +317,10 @@ fn receivers_elsewhere(unit: &str, system: &str, [east, north]: [f64; 2], is_far
         let found = opened(folder).unwrap();
         let of_photo = found.looked_up.evidence.iter().map(|found| {
             let of_place = found.doubts.iter().find_map(|doubt| match doubt {
-                Doubt::OtherPlace { distance, usual } => Some([*distance, *usual]),
+                Doubt::OtherPlace {
+                    distance,
+                    usual: Some(usual),
+                } => Some([*distance, *usual]),
                 _ => None,
             });
             of_place.is_some_and(|[distance, usual]| (distance - 20.0).abs() < 1.0 && usual < 1.0)

@@ -4,4 +4,5 @@ mod doubted;
 mod drone_photos;
 mod metashape;
 mod odm;
+mod places;
 mod ros_topics;

@@ -191,6 +191,20 @@ impl WorldFrame {
         }
     }
 
+    /// That heights here count from the ellipsoid and there from something else, or the other way round, in words for here and
+    /// there; `None` where one of them does not say. What a local frame's origin counts from is not sure.
+    pub(crate) fn other_heights(&self, there: &Self) -> Option<[String; 2]> {
+        let stated = |frame: &Self| match frame {
+            Self::Named(crs) if crs.states_heights() || crs.kind() == CrsKind::Geocentric => {
+                Some(frame.heights().to_owned())
+            }
+            _ => None,
+        };
+        let both = [stated(self)?, stated(there)?];
+        let [here, there] = both.each_ref().map(|heights| heights == "the ellipsoid");
+        (here != there).then_some(both)
+    }
+
     /// The place of a point; `None` outside of what the system covers.
     pub(super) fn place(&self, point: DVec3) -> Option<Geographic> {
         match self {
@@ -264,5 +278,23 @@ mod tests {
         assert_eq!(named("EPSG:32632+5703").heights_in_words(), None);
         let utm = named("EPSG:32633").check_lengths(DVec3::new(500_000.0, 5e6, 0.0));
         assert_eq!(utm, Ok(None));
+    }
+
+    #[test]
+    fn heights_of_the_ellipsoid_are_not_those_of_a_geoid() {
+        let apart = |from: &str, to: &str| named(from).other_heights(&named(to));
+        let [here, there] = apart("ECEF", "EPSG:32632+5773").unwrap();
+        assert_eq!(here, "the ellipsoid");
+        assert!(there.contains("EGM96"), "{there}");
+        assert!(apart("EPSG:32632+5773", "EPSG:4979").is_some());
+        // Where one does not say, or both say the same, nothing is known to be apart.
+        for (from, to) in [
+            ("ECEF", "EPSG:32632"),
+            ("ECEF", "EPSG:4979"),
+            ("EPSG:32632+5773", "EPSG:32633+5773"),
+            ("EPSG:4326", "EPSG:32632+5773"),
+        ] {
+            assert_eq!(apart(from, to), None, "{from} {to}");
+        }
     }
 }

@@ -10,19 +10,22 @@ use crate::geometry::Bounds;
 /// No drone photographs ground that begins so many metres away.
 const OUT_OF_SIGHT: f64 = 20_000.0;
 
-/// What is said of such a surface. `centers` are those of the photos, in `world`.
+/// What is said of such a surface, or of one in a system that is not understood (`own`). `centers` are those of the photos, in
+/// `world`.
 ///
 /// # Errors
 /// Where it lies so far from the photos that its coordinates are in another system.
 pub(crate) fn taken_to_be_in(
+    own: &WorldFrame,
     world: &WorldFrame,
     points: &[DVec3],
     centers: &[DVec3],
 ) -> Result<String, Fault> {
-    let taken = format!(
-        "it states no coordinate system and is taken to be in {}",
-        world.in_words()
-    );
+    let states = match own.crs() {
+        None => "it states no coordinate system",
+        Some(_) => "it states a coordinate system that fragscale cannot convert",
+    };
+    let taken = format!("{states} and is taken to be in {}", world.in_words());
     let (Some(surface), Some(photos)) = (Bounds::of(points), Bounds::of(centers)) else {
         return Ok(taken);
     };
@@ -39,7 +42,7 @@ pub(crate) fn taken_to_be_in(
     };
     Err(Fault::new(
         format!(
-            "it states no coordinate system, and cannot be in the photos' ({}): its points are around {}, the photos around {}, {:.0} km away",
+            "{states}, and cannot be in the photos' ({}): its points are around {}, the photos around {}, {:.0} km away",
             world.in_words(),
             about(&surface),
             about(&photos),

@@ -82,6 +82,7 @@ mod tests {
             lens: None,
             time: None,
             size: (1, 1),
+            is_turned: false,
             place: Some(MeasuredPlace {
                 place: Geographic {
                     latitude,

@@ -2,7 +2,7 @@
 //! EXIF and XMP say (`photo_metadata` is the specification of those). With a cloud this is a flight
 //! without any structure from motion.
 //!
-//! Positions are (degrees east, degrees north, metres up) in EPSG:4326; rotations take camera axes to
+//! Positions are (degrees east, degrees north, metres up) in EPSG:4326, or 4979 where all heights are above the ellipsoid; rotations take camera axes to
 //! east, north, up at the photo's own place. Photos that do not say where they were or which way the
 //! camera looked, or say it in a way that is not known, are left out and counted; those with a place
 //! alone still are measured positions.
@@ -107,6 +107,13 @@ pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
         let errors = PoseCovariance::of_deviations(deviation, None);
         reconstruction.pose_errors.push(errors);
         posed.push(metadata);
+    }
+    // Of all of them, or nothing is said for all.
+    let is_above_ellipsoid = |photo: &&PhotoMetadata| {
+        photo.place.and_then(|place| place.height) == Some(HeightReference::Ellipsoid)
+    };
+    if !posed.is_empty() && posed.iter().all(is_above_ellipsoid) {
+        reconstruction.crs = Some("EPSG:4979".to_owned());
     }
     if reconstruction.photos.is_empty() {
         return Err(FileError::new(path, left_out.all(files.len())));

@@ -94,6 +94,14 @@ pub struct FocalCandidate {
     pub relative_error: f64,
 }
 
+/// The share from which two focal lengths are worth a sentence, however well the stated one is known.
+const WORTH_SAYING: f64 = 0.05;
+
+/// Whether a calibration's focal length that is `ratio` times the stated one is beyond what that may be off, `relative_error`.
+pub fn is_another_focal(ratio: f64, relative_error: f64) -> bool {
+    (ratio - 1.0).abs() > relative_error.max(WORTH_SAYING)
+}
+
 /// All that the metadata state, the most trustworthy first.
 pub(super) fn candidates(
     exif: &ExifFields,

@@ -17,7 +17,7 @@ use std::path::Path;
 
 use glam::{DMat3, DVec3};
 
-pub use focal::{FocalCandidate, FocalSource};
+pub use focal::{FocalCandidate, FocalSource, is_another_focal};
 
 use crate::camera::Pose;
 use crate::fault::{Fault, by_cause};
@@ -42,6 +42,8 @@ pub struct PhotoMetadata {
     pub time: Option<String>,
     /// Width and height of the stored pixels.
     pub size: (u32, u32),
+    /// Whether viewers show these pixels turned or mirrored (EXIF's Orientation).
+    pub is_turned: bool,
     /// Where it was taken.
     pub place: Option<MeasuredPlace>,
     /// Metres above the take-off.
@@ -225,6 +227,7 @@ pub fn read(mut input: impl BufRead + Seek) -> Result<PhotoMetadata, Fault> {
         lens: exif.lens,
         time: exif.time,
         size,
+        is_turned: exif.orientation.is_some_and(|turned| turned > 1),
         relative_altitude: makers::relative_altitude(&xmp),
         laser_range: makers::laser_range(&xmp),
         orientation,
