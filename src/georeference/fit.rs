@@ -60,6 +60,16 @@ pub struct Pair {
     pub accuracy: Option<f64>,
 }
 
+impl Pair {
+    /// Standard deviation of a coordinate that a drone's receiver measured without saying how well, metres.
+    pub const USUAL_OF_RECEIVERS: f64 = 5.0;
+
+    /// One [`accuracy`](Self::accuracy) for all directions, of standard deviations along three axes.
+    pub fn accuracy_of(deviations: DVec3) -> f64 {
+        (deviations.length_squared() / 3.0).sqrt()
+    }
+}
+
 /// A fitted similarity and how well it fits. Lengths are in units of the world.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {

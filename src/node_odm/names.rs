@@ -67,6 +67,12 @@ impl Names {
         self.pairs.iter().map(|(_, sent)| sent.as_str())
     }
 
+    /// What a photo is called on the node; what is none of them keeps its name.
+    pub(crate) fn of_photo<'a>(&'a self, photo: &'a str) -> &'a str {
+        let pair = self.pairs.iter().find(|(ours, _)| ours == photo);
+        pair.map_or(photo, |(_, sent)| sent)
+    }
+
     /// A list of the user's in the names of the node, and how many of its lines name a photo: in each line behind
     /// so many fields that are apart by blanks. What names none stays as it is, to the byte.
     pub(crate) fn in_list(&self, list: Vec<u8>, before: usize) -> (Vec<u8>, usize) {

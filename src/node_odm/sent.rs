@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use crate::fault::Fault;
 use crate::files::{FileError, read_small};
+use crate::formats::control_list_text;
 use crate::formats::photos::photo_metadata;
 use crate::geo_txt::geo_txt;
 use crate::jobs::Progress;
@@ -167,7 +168,15 @@ impl Sent {
         );
         let text = read_small(path, LIST, "list of control points", "name a smaller one")?;
         // Behind place and pixel.
-        let (text, _) = self.names.in_list(text, 5);
+        let (text, named) = self.names.in_list(text, 5);
+        // OpenDroneMap takes no commas, and passes over what it does not understand: the marks are written for it then.
+        let text = match named < ours {
+            true => {
+                let name_of = |photo: &str| self.names.of_photo(photo).to_owned();
+                control_list_text(&list, name_of).into_bytes()
+            }
+            false => text,
+        };
         self.add(GCP, text);
         Ok(())
     }

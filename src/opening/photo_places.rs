@@ -27,8 +27,6 @@ const ELSEWHERE_OF_BETTER: f64 = 8.0;
 
 /// So many positions tell a length: a fit to three leaves two numbers over.
 const LEAST_DISTANT: usize = 4;
-/// What a receiver errs by that does not say so, metres.
-const USUAL: f64 = 5.0;
 /// The share of a length from which a sentence is due, and how many times its interval it has to be: receivers err together.
 const WORTH_SAYING: f64 = 0.05;
 const OF_INTERVAL: f64 = 1.5;
@@ -84,13 +82,13 @@ pub(crate) fn check_lengths(flight: &Flight, described: &[Described<'_>]) -> Opt
         let measured = metadata.place.filter(|place| place.height.is_some())?;
         let place = ecef_from_geographic(measured.place);
         let (origin, axes) = *origin.get_or_insert((place, enu_axes(measured.place)));
-        let deviation = measured
-            .deviation
-            .map(|d| (d.length_squared() / 3.0).sqrt());
+        let stated = measured.deviation.map(Pair::accuracy_of);
         Some(Pair {
             source: photo.pose.center * parts.unit.metres(),
             target: axes.transpose() * (place - origin),
-            accuracy: Some(deviation.filter(|d| *d > 0.0).unwrap_or(USUAL)),
+            accuracy: stated
+                .filter(|d| *d > 0.0)
+                .or(Some(Pair::USUAL_OF_RECEIVERS)),
         })
     });
     let pairs: Vec<Pair> = pairs.collect();
@@ -111,6 +109,7 @@ pub(crate) fn check_lengths(flight: &Flight, described: &[Described<'_>]) -> Opt
 /// Whether the receivers were so near each other that their errors are all that they tell, as on a hover.
 fn is_small(pairs: &[Pair]) -> bool {
     let middle = pairs.iter().map(|pair| pair.target).sum::<DVec3>() / pairs.len() as f64;
-    let spread = |pair: &Pair| pair.target.distance(middle) / pair.accuracy.unwrap_or(USUAL);
+    let usual = Pair::USUAL_OF_RECEIVERS;
+    let spread = |pair: &Pair| pair.target.distance(middle) / pair.accuracy.unwrap_or(usual);
     median(&mut pairs.iter().map(spread).collect::<Vec<_>>()).is_none_or(|spread| spread < 3.0)
 }

@@ -8,6 +8,7 @@ use std::path::Path;
 use fragscale::geodesy::{Crs, Geographic, ecef_from_geographic, enu_axes};
 use fragscale::jobs::Progress;
 use fragscale::opening::{OpenOptions, Opened, open_flight};
+use fragscale::surface::UpAxis;
 use glam::{DMat3, DVec3};
 
 /// In UTM zone 33 north, 2 degrees west of its central meridian.
@@ -180,13 +181,8 @@ fn a_projects_own_map_comes_before_the_zone() {
     assert_eq!(outcomes[0].scale().unwrap().corners_on_surface(), 4);
 }
 
-/// The ground as ECEF coordinates in a LAZ, its system as PROJ writes EPSG:4978 in WKT 2.
-#[test]
-fn a_cloud_from_the_earths_centre_meets_poses_from_there() {
-    const SYSTEM: &str = r#"GEODCRS["WGS 84",DATUM["World Geodetic System 1984",ELLIPSOID["WGS 84",6378137,298.257223563,LENGTHUNIT["metre",1]]],PRIMEM["Greenwich",0,ANGLEUNIT["degree",0.0174532925199433]],CS[Cartesian,3],AXIS["(X)",geocentricX,ORDER[1],LENGTHUNIT["metre",1]],AXIS["(Y)",geocentricY,ORDER[2],LENGTHUNIT["metre",1]],AXIS["(Z)",geocentricZ,ORDER[3],LENGTHUNIT["metre",1]],ID["EPSG",4978]]"#;
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    fs::write(folder.join("cameras.xml"), cameras_xml()).unwrap();
+/// A LAZ with these points, whose system is this WKT.
+fn write_laz(path: &Path, system: &str, points: &[DVec3]) {
     let mut builder = las::Builder::from((1, 4));
     builder.point_format = las::point::Format::new(6).unwrap();
     builder.point_format.is_compressed = true;
@@ -195,26 +191,17 @@ fn a_cloud_from_the_earths_centre_meets_poses_from_there() {
         user_id: "LASF_Projection".to_owned(),
         record_id: 2112,
         description: String::new(),
-        data: SYSTEM.as_bytes().to_vec(),
+        data: system.as_bytes().to_vec(),
     });
-    let axis = |offset| las::Transform {
+    let axis = |offset: f64| las::Transform {
         scale: 1e-4,
-        offset,
+        offset: (offset / 1e5).round() * 1e5,
     };
-    builder.transforms = las::Vector {
-        x: axis(4.1e6),
-        y: axis(0.9e6),
-        z: axis(4.7e6),
-    };
-    let file = fs::File::create(folder.join("ground.laz")).unwrap();
+    let [x, y, z] = points[0].to_array().map(axis);
+    builder.transforms = las::Vector { x, y, z };
+    let file = fs::File::create(path).unwrap();
     let mut writer = las::Writer::new(file, builder.into_header().unwrap()).unwrap();
-    for (east, north) in [(-1e-3, -1e-3), (1e-3, -1e-3), (1e-3, 1e-3), (-1e-3, 1e-3)] {
-        let place = Geographic {
-            longitude: PLACE.longitude + east,
-            latitude: PLACE.latitude + north,
-            ..PLACE
-        };
-        let DVec3 { x, y, z } = ecef_from_geographic(place);
+    for DVec3 { x, y, z } in points.iter().copied() {
         let gps_time = Some(0.0);
         let point = las::Point {
             x,
@@ -226,6 +213,134 @@ fn a_cloud_from_the_earths_centre_meets_poses_from_there() {
         writer.write_point(point).unwrap();
     }
     writer.close().unwrap();
+}
+
+const UTM_33: &str = r#"PROJCS["WGS 84 / UTM zone 33N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",15],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1],AUTHORITY["EPSG","32633"]]"#;
+
+/// The words of the reasons of the one photo.
+fn reasons(opened: &Opened) -> Vec<&'static str> {
+    let doubts = opened.looked_up.evidence[0].doubts.iter();
+    doubts.map(|doubt| doubt.kind()).collect()
+}
+
+/// Metashape's poses are above the ellipsoid; a cloud whose system has heights above a geoid lies elsewhere, by tens of metres.
+#[test]
+fn heights_of_two_levels_are_a_reason_for_doubt() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("cameras.xml"), cameras_xml()).unwrap();
+    let center = Crs::understand("EPSG:32633")
+        .unwrap()
+        .from_geographic(PLACE);
+    let center = center.unwrap();
+    let corners = [(-50.0, -50.0), (50.0, -50.0), (50.0, 50.0), (-50.0, 50.0)];
+    let points = corners.map(|(x, y)| center + DVec3::new(x, y, 0.0));
+    let compound = format!(
+        r#"COMPD_CS["a map and heights",{UTM_33},VERT_CS["EGM96 height",VERT_DATUM["EGM96 geoid",2005,AUTHORITY["EPSG","5171"]],UNIT["metre",1],AXIS["Up",UP],AUTHORITY["EPSG","5773"]]]"#
+    );
+    let with = |system: &str| {
+        write_laz(&folder.join("ground.laz"), system, &points);
+        let options = OpenOptions {
+            surface: Some(folder.join("ground.laz")),
+            ..OpenOptions::default()
+        };
+        open_flight(&folder.join("cameras.xml"), &options, &Progress::default()).unwrap()
+    };
+    let opened = with(&compound);
+    assert!(reasons(&opened).contains(&"other-heights"), "{opened:?}");
+    let said = opened.warnings.join("\n");
+    assert_eq!(
+        said.matches("heights count from the ellipsoid, the surface's")
+            .count(),
+        1,
+        "{said}"
+    );
+    let opened = with(UTM_33);
+    assert!(!reasons(&opened).contains(&"other-heights"), "{opened:?}");
+}
+
+/// A model in a frame of its own counts in no unit because the file of its cloud names a system: a map's, at whose origin it lies,
+/// or a local one. Where both are on the map it does.
+#[test]
+fn a_clouds_system_gives_no_unit_to_a_model_of_its_own() {
+    const LOCAL: &str = r#"LOCAL_CS["Local Coordinates (m)",LOCAL_DATUM["Local Datum",0],UNIT["metre",1,AUTHORITY["EPSG","9001"]]]"#;
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (system, [east, north], is_known) in [
+        (UTM_33, [0.0, 0.0], false),
+        (LOCAL, [0.0, 0.0], false),
+        (UTM_33, [350_000.0, 5_300_000.0], true),
+    ] {
+        let json = format!(
+            r#"{{"fl_x": 1000, "fl_y": 1000, "cx": 200, "cy": 150, "w": 400, "h": 300, "applied_scale": 2, "frames": [{{"file_path": "a.jpg", "transform_matrix": [[1,0,0,{east}],[0,1,0,{north}],[0,0,1,111],[0,0,0,1]]}}]}}"#
+        );
+        fs::write(folder.join("transforms.json"), json).unwrap();
+        let corners = [(-50.0, -50.0), (50.0, -50.0), (50.0, 50.0), (-50.0, 50.0)];
+        let points = corners.map(|(x, y)| DVec3::new(east + x, north + y, 11.0));
+        write_laz(&folder.join("cloud.laz"), system, &points);
+        let options = OpenOptions {
+            surface: Some(folder.join("cloud.laz")),
+            ..OpenOptions::default()
+        };
+        let model = folder.join("transforms.json");
+        let opened = open_flight(&model, &options, &Progress::default()).unwrap();
+        assert_eq!(opened.flight.parts().unit_known, is_known, "{system}");
+        let crs = is_known.then_some("EPSG:32633");
+        assert_eq!(
+            opened.crs.as_deref().filter(|crs| crs.starts_with("EPSG")),
+            crs
+        );
+        let said = opened.warnings.join("\n");
+        let at_origin = said.contains("are at that map's origin");
+        assert_eq!(at_origin, !is_known && system == UTM_33, "{said}");
+        assert!(said.contains("2 times as large"), "{said}");
+    }
+}
+
+/// A cloud whose y is up, named beside the flight.
+#[test]
+fn up_is_said_of_a_surface_beside_the_flight() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("cameras.xml"), cameras_xml()).unwrap();
+    fs::write(folder.join("ground.xyz"), ground("EPSG:32633")).unwrap();
+    let opened = open(folder, "unit = \"m\"");
+    let lying = fs::read_to_string(folder.join("ground.xyz")).unwrap();
+    let lying = lying.lines().map(|line| {
+        let [x, y, z] = line.split(' ').collect::<Vec<_>>()[..] else {
+            panic!("{line}");
+        };
+        let y: f64 = y.parse().unwrap();
+        format!("{x} {z} {}\n", -y)
+    });
+    fs::write(folder.join("lying.xyz"), lying.collect::<String>()).unwrap();
+    let options = OpenOptions {
+        surface: Some(folder.join("lying.xyz")),
+        surface_up: Some(UpAxis::Y),
+        ..OpenOptions::default()
+    };
+    let turned = open_flight(folder, &options, &Progress::default()).unwrap();
+    let points =
+        |opened: &Opened| -> Vec<DVec3> { opened.flight.parts().surface.vertices().collect() };
+    assert_eq!(points(&turned), points(&opened));
+}
+
+/// The ground as ECEF coordinates in a LAZ, its system as PROJ writes EPSG:4978 in WKT 2.
+#[test]
+fn a_cloud_from_the_earths_centre_meets_poses_from_there() {
+    const SYSTEM: &str = r#"GEODCRS["WGS 84",DATUM["World Geodetic System 1984",ELLIPSOID["WGS 84",6378137,298.257223563,LENGTHUNIT["metre",1]]],PRIMEM["Greenwich",0,ANGLEUNIT["degree",0.0174532925199433]],CS[Cartesian,3],AXIS["(X)",geocentricX,ORDER[1],LENGTHUNIT["metre",1]],AXIS["(Y)",geocentricY,ORDER[2],LENGTHUNIT["metre",1]],AXIS["(Z)",geocentricZ,ORDER[3],LENGTHUNIT["metre",1]],ID["EPSG",4978]]"#;
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("cameras.xml"), cameras_xml()).unwrap();
+    let corners = [(-1e-3, -1e-3), (1e-3, -1e-3), (1e-3, 1e-3), (-1e-3, 1e-3)];
+    let points = corners.map(|(east, north)| {
+        ecef_from_geographic(Geographic {
+            longitude: PLACE.longitude + east,
+            latitude: PLACE.latitude + north,
+            ..PLACE
+        })
+    });
+    write_laz(&folder.join("ground.laz"), SYSTEM, &points);
     let text = "format = 1\nworld.unit = \"m\"\nsurface.file = \"ground.laz\"\nphotos.reconstruction = \"cameras.xml\"\n";
     fs::write(folder.join("flight.toml"), text).unwrap();
     let opened = open_flight(folder, &OpenOptions::default(), &Progress::default()).unwrap();

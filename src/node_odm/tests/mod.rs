@@ -329,6 +329,26 @@ fn control_points_go_along() {
         .unwrap();
     assert_eq!(sent.1, fs::read(&list).unwrap());
 
+    // One between commas, as spreadsheets write it, is written as OpenDroneMap reads it: what has six parts between blanks.
+    let desk = Desk::faulty(ServerFault::None);
+    let commas = "EPSG:32615,,,,,,\n1,2,3,10,20,IMG_1.JPG,a\n1,2,3,10,20,IMG_2.JPG,a\n";
+    fs::write(desk.photos().join("gcp_list.txt"), commas).unwrap();
+    desk.run().unwrap();
+    let tasks = desk.server.tasks();
+    let sent = tasks[0].files.iter();
+    let (_, sent) = sent
+        .clone()
+        .find(|(name, _)| name == "gcp_list.txt")
+        .unwrap();
+    let sent = String::from_utf8_lossy(sent);
+    let marks = sent.lines().filter(|line| !line.starts_with('#')).skip(1);
+    let marks: Vec<Vec<&str>> = marks
+        .map(|line| line.split_whitespace().collect())
+        .collect();
+    assert!(sent.starts_with("EPSG:32615\n"), "{sent}");
+    assert_eq!(marks[0], ["1", "2", "3", "10", "20", "IMG_1.JPG", "a"]);
+    assert_eq!(marks[1], ["1", "2", "3", "10", "20", "IMG_2.JPG", "a"]);
+
     // One that OpenDroneMap could not use is said before anything is sent.
     for (text, said) in [
         (

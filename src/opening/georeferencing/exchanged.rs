@@ -17,16 +17,17 @@ pub(super) fn exchanged<'a>(known: &[&'a Known]) -> Option<[&'a str; 2]> {
     }
     // Coordinates of the Earth would eat the digits.
     let middle = known.iter().map(|known| known.pair.target).sum::<DVec3>() / known.len() as f64;
-    let mut pairs: Vec<(DVec3, DVec3, f64)> = (known.iter())
-        .map(|known| (known.pair.source, known.pair.target - middle, 1.0))
+    let sources: Vec<DVec3> = known.iter().map(|known| known.pair.source).collect();
+    let mut targets: Vec<DVec3> = (known.iter())
+        .map(|known| known.pair.target - middle)
         .collect();
-    let as_they_are = off(&pairs)?;
+    let as_they_are = off(&sources, &targets)?;
     let mut found = Vec::new();
-    for one in 0..pairs.len() {
+    for one in 0..targets.len() {
         for other in 0..one {
-            exchange(&mut pairs, one, other);
-            found.extend(off(&pairs).map(|off| (off, [other, one])));
-            exchange(&mut pairs, one, other);
+            targets.swap(one, other);
+            found.extend(off(&sources, &targets).map(|off| (off, [other, one])));
+            targets.swap(one, other);
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -35,15 +36,12 @@ pub(super) fn exchanged<'a>(known: &[&'a Known]) -> Option<[&'a str; 2]> {
     (best * BETTER < as_they_are.min(next)).then(|| two.map(|index| known[index].name.as_str()))
 }
 
-fn exchange(pairs: &mut [(DVec3, DVec3, f64)], one: usize, other: usize) {
-    let kept = pairs[one].1;
-    pairs[one].1 = pairs[other].1;
-    pairs[other].1 = kept;
-}
-
 /// The summed squares' root of what the positions are off their fit.
-fn off(pairs: &[(DVec3, DVec3, f64)]) -> Option<f64> {
-    let fit = similarity_of(pairs)?;
+fn off(sources: &[DVec3], targets: &[DVec3]) -> Option<f64> {
+    let pairs: Vec<_> = (sources.iter().zip(targets))
+        .map(|(source, target)| (*source, *target, 1.0))
+        .collect();
+    let fit = similarity_of(&pairs)?;
     let squares: f64 = (pairs.iter())
         .map(|(source, target, _)| target.distance_squared(fit.apply(*source)))
         .sum();

@@ -466,7 +466,7 @@ fn of_photos(
                 source: photo.pose.center,
                 target: world.of(position.position)?,
                 accuracy: (position.accuracy)
-                    .map(|a| (a.length_squared() / 3.0).sqrt() / world.unit().metres())
+                    .map(|a| Pair::accuracy_of(a) / world.unit().metres())
                     .filter(|a| *a > 0.0),
             },
             marks_px: None,

@@ -195,9 +195,7 @@ impl WorldFrame {
     /// there; `None` where one of them does not say. What a local frame's origin counts from is not sure.
     pub(crate) fn other_heights(&self, there: &Self) -> Option<[String; 2]> {
         let stated = |frame: &Self| match frame {
-            Self::Named(crs) if crs.states_heights() || crs.kind() == CrsKind::Geocentric => {
-                Some(frame.heights().to_owned())
-            }
+            Self::Named(crs) if crs.states_heights() => Some(crs.heights().to_owned()),
             _ => None,
         };
         let both = [stated(self)?, stated(there)?];

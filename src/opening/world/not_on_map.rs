@@ -4,6 +4,7 @@
 use glam::DVec3;
 
 use super::frame::WorldFrame;
+use crate::geodesy::CrsKind;
 
 /// Maps put their origin beside what they show: no place of one lies within so many metres of it along both axes.
 const NEAR_ORIGIN: f64 = 5000.0;
@@ -11,14 +12,12 @@ const NEAR_ORIGIN: f64 = 5000.0;
 /// That coordinates about `point` are none of the map that the file of a surface names, in words; `None` where they may be, or
 /// it names none.
 pub(crate) fn not_on_its_map(frame: &WorldFrame, point: DVec3) -> Option<String> {
-    let map = frame.clone().projected()?;
-    let metres = map.metres();
-    let is_near = point.truncate().abs().max_element() * metres < NEAR_ORIGIN;
-    is_near.then(|| {
+    let is_near = point.truncate().abs().max_element() * frame.metres() < NEAR_ORIGIN;
+    (frame.is(CrsKind::Projected) && is_near).then(|| {
         format!(
             "it names {}, but its points, about ({:.0}, {:.0}), are at that map's origin, where nothing is: they are taken to be in a frame \
              of their own (where they are in it all the same, say so as world.crs in a flight.toml)",
-            map.in_words(),
+            frame.in_words(),
             point.x,
             point.y
         )

@@ -14,9 +14,6 @@ use crate::fault::Fault;
 use crate::georeference::{Pair, fit};
 use crate::jobs::Progress;
 
-/// Standard deviation that a place has whose receiver states none, metres.
-const USUAL: f64 = 5.0;
-
 /// Brings the model to the photos' places; without three of them it is only turned upright.
 ///
 /// # Errors
@@ -40,7 +37,7 @@ pub(super) fn place(
         // One number for all directions is what the adjustment takes.
         let deviation = place
             .deviation
-            .map_or(USUAL, |d| (d.length_squared() / 3.0).sqrt());
+            .map_or(Pair::USUAL_OF_RECEIVERS, Pair::accuracy_of);
         images.push(image);
         pairs.push(Pair {
             source: point(&center),
@@ -63,7 +60,7 @@ pub(super) fn place(
     let places: HashMap<u32, (Vec3, f64)> = used
         .filter(|(_, used)| **used)
         .map(|((&image, pair), _)| {
-            let deviation = pair.accuracy.unwrap_or(USUAL);
+            let deviation = pair.accuracy.unwrap_or(Pair::USUAL_OF_RECEIVERS);
             (image, (to_vector(pair.target), deviation))
         })
         .collect();

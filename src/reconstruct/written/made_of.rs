@@ -84,22 +84,23 @@ fn of_other_photos(before: &BTreeMap<&str, u64>, now: &BTreeMap<&str, u64>) -> S
     let few = |what: &str, names: Vec<&str>| {
         (!names.is_empty()).then(|| format!("{} {what}: {}", names.len(), first_names(&names)))
     };
-    let without = |of: &BTreeMap<&'_ str, u64>, other: &BTreeMap<&str, u64>| {
-        let names = of.keys().filter(|name| !other.contains_key(*name));
-        names.map(|name| (*name).to_owned()).collect::<Vec<_>>()
-    };
-    let (more, fewer) = (without(now, before), without(before, now));
     let changed = (now.iter())
         .filter(|(name, size)| before.get(*name).is_some_and(|before| before != *size))
         .map(|(name, _)| *name)
         .collect();
     let differences = [
-        few("more now", more.iter().map(String::as_str).collect()),
-        few("gone", fewer.iter().map(String::as_str).collect()),
+        few("more now", without(now, before)),
+        few("gone", without(before, now)),
         few("changed since", changed),
     ];
     let differences: Vec<String> = differences.into_iter().flatten().collect();
     format!("of other photos ({})", differences.join("; "))
+}
+
+/// The names of one that the other lacks.
+fn without<'a>(of: &BTreeMap<&'a str, u64>, other: &BTreeMap<&str, u64>) -> Vec<&'a str> {
+    let names = of.keys().copied();
+    names.filter(|name| !other.contains_key(name)).collect()
 }
 
 #[cfg(test)]
