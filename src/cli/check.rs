@@ -26,7 +26,7 @@ pub(super) struct CheckArguments {
 }
 
 /// Opens the flight, which looks at coordinate systems, places, sizes and metadata, and compares the
-/// colours of the photos with those of the surface.
+/// photos with the colours of the surface and with those beside them.
 pub(super) fn check(arguments: &CheckArguments, progress: &Progress) -> Result<Answer, String> {
     let mut outputs = arguments.outputs()?;
     let (flight, memory) = (&arguments.flight, &arguments.memory);
@@ -80,14 +80,8 @@ fn look_at(
 ) -> Result<Looked, String> {
     let mut warnings = opened.all_warnings();
     let mut text = format!("{CHECK_MARK}\n");
-    let surface = &opened.flight.parts().surface;
-    let why_not = match (surface.is_part(), surface.colors().is_empty()) {
-        (true, _) => Some("not looked at: only a part of the surface was read (--memory)\n"),
-        (false, true) => Some("the surface has no colours\n"),
-        (false, false) => None,
-    };
-    if let Some(why_not) = why_not {
-        text.push_str(why_not);
+    if opened.flight.parts().surface.is_part() {
+        text.push_str("not looked at: only a part of the surface was read (--memory)\n");
         return Ok(Looked {
             text,
             warnings,
@@ -99,12 +93,14 @@ fn look_at(
     let limits = Limits::default();
     let mut review = Review::of_scales(flight, looked_up, &limits, progress).map_err(at)?;
     let evidence = &review.looked_up().evidence;
-    let compared =
-        opening::compare_colours(&opened.flight, &opened.photo_files, evidence, progress);
+    let compared = opening::compare_pixels(&opened.flight, &opened.photo_files, evidence, progress);
     let compared = compared.map_err(at)?;
-    let found = compared.iter();
-    review.take_colours(found.map(|(photo, colours)| (*photo, colours.doubt().into())));
-    for (photo, (_, colours)) in review.photos().zip(&compared) {
+    opening::take_compared(&mut review, &compared);
+    let has_colours = !opened.flight.parts().surface.colors().is_empty();
+    if !has_colours {
+        text.push_str("the surface has no colours\n");
+    }
+    for (index, (photo, (_, colours))) in review.photos().zip(&compared.colours).enumerate() {
         let name = photo.name();
         let said = match colours {
             Colours::Not(why) | Colours::Unreadable(why) => why.clone(),
@@ -117,10 +113,16 @@ fn look_at(
         let of_pixels = photo
             .doubts
             .iter()
-            .filter(|doubt| doubt.is_of_colours() || matches!(doubt, Doubt::FileUnreadable(_)));
+            .filter(|doubt| doubt.is_of_pixels() || matches!(doubt, Doubt::FileUnreadable(_)));
         warnings.extend(of_pixels.map(|doubt| format!("photo '{name}': {doubt}")));
         // Writing into a text does not fail.
-        let _ = writeln!(text, "{name}  {said}");
+        let together = compared.together.iter().find(|(of, _)| *of == index);
+        let together = together.map(|(_, together)| together.in_words());
+        let said = [has_colours.then_some(said), together];
+        let said: Vec<String> = said.into_iter().flatten().collect();
+        if !said.is_empty() {
+            let _ = writeln!(text, "{name}  {}", said.join("; "));
+        }
     }
     Ok(Looked {
         text,

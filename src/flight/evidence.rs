@@ -42,6 +42,20 @@ impl From<Option<Doubt>> for ColoursFound {
     }
 }
 
+/// Whether a photo and those beside it see the surface where it is.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum TogetherFound {
+    /// Nobody has compared them yet, or no photo is beside it.
+    #[default]
+    NotCompared,
+    /// They do not tell.
+    Unclear,
+    /// They do.
+    There,
+    /// They see it elsewhere.
+    Against(Doubt),
+}
+
 /// What was looked up of one photo.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Evidence {
@@ -51,6 +65,8 @@ pub struct Evidence {
     pub doubts: Vec<Doubt>,
     /// What its colours say.
     pub colours: ColoursFound,
+    /// What it and the photos beside it see.
+    pub together: TogetherFound,
 }
 
 impl Evidence {
@@ -62,7 +78,11 @@ impl Evidence {
             (ColoursFound::Against(doubt), _) => Some(doubt),
             (ColoursFound::NotCompared | ColoursFound::NothingAgainst, _) => None,
         };
-        self.doubts.iter().chain(of_colours)
+        let of_together = match &self.together {
+            TogetherFound::Against(doubt) => Some(doubt),
+            TogetherFound::NotCompared | TogetherFound::Unclear | TogetherFound::There => None,
+        };
+        self.doubts.iter().chain(of_colours).chain(of_together)
     }
 }
 

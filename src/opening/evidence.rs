@@ -1,20 +1,18 @@
 //! Looks up what speaks against the scales of a flight's photos, outside of the flight's own numbers:
-//! where they stand, what their files say of themselves, whose size nobody has seen, whose colours are
-//! not those of the surface. Reviews are made of it, and every front end asks here.
+//! where they stand, what their files say of themselves, whose size nobody has seen. Reviews are made of it, and every front
+//! end asks here; what the photos show is looked at in [`crate::pixels`].
 
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
-use crate::fault::{Fault, first_names};
-use crate::flight::{ColoursFound, Doubt, Evidence, Flight, LookedUp, PhotoFileState, Review};
-use crate::jobs::Progress;
+use crate::fault::first_names;
+use crate::flight::{Doubt, Evidence, Flight, LookedUp, PhotoFileState};
 use crate::photo_checks::photo_checks;
 use crate::photo_files::PhotoFile;
 use crate::photo_places::Finding;
-use crate::picture::{Agreement, Mismatch};
 
 /// Looks up what the files' headers and the places of the photos say; `files` are parallel to the
-/// flight's photos. No photo is decoded: for colours see [`compare_colours`].
+/// flight's photos. No photo is decoded: for that see [`crate::compare_pixels`].
 pub fn look_up(flight: &Flight, files: &[PhotoFile]) -> LookedUp {
     let parts = flight.parts();
     let mut evidence: Vec<Evidence> = files
@@ -174,111 +172,4 @@ fn doubt_sizes(flight: &Flight, files: &[PhotoFile], evidence: &mut [Evidence]) 
         ));
     }
     warnings
-}
-
-/// Whether a photo's colours are those of the surface.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Colours {
-    /// They were compared.
-    Compared(Agreement),
-    /// Why they were not, in words.
-    Not(String),
-    /// The photo's file is damaged or not readable, with the reason.
-    Unreadable(String),
-}
-
-impl Colours {
-    /// What they, or the file that they were to be read from, say against the photo.
-    pub fn doubt(&self) -> Option<Doubt> {
-        let agreement = match self {
-            Self::Compared(agreement) => agreement,
-            Self::Unreadable(why) => return Some(Doubt::FileUnreadable(why.clone())),
-            Self::Not(_) => return None,
-        };
-        let Agreement {
-            points,
-            correlation,
-            flipped: (flipped, _),
-        } = *agreement;
-        Some(match agreement.mismatch()? {
-            Mismatch::Flipped(flip) => Doubt::Flipped {
-                correlation,
-                flipped,
-                points,
-                how: flip.in_words(),
-            },
-            Mismatch::Different => Doubt::OtherColours {
-                correlation,
-                points,
-            },
-        })
-    }
-
-    /// Of one photo of the flight, with its pixels as shot.
-    pub fn of_photo(flight: &Flight, photo: usize, pixels: &image::RgbImage) -> Self {
-        let parts = flight.parts();
-        let Some(posed) = parts.photos.get(photo) else {
-            return Self::Not("there is no such photo".to_owned());
-        };
-        let camera = flight.camera(posed);
-        match Agreement::of_photo(&parts.surface, camera, &posed.pose, pixels) {
-            Ok(agreement) => Self::Compared(agreement),
-            Err(why) => Self::Not(why.to_string()),
-        }
-    }
-}
-
-/// Compares the colours of the photos with those of the surface, of those that nobody has compared yet
-/// by `evidence`, whose lists are parallel to the flight's photos. Returns what was found now, each
-/// with its place in the flight.
-///
-/// # Errors
-/// Where the work was cancelled.
-pub fn compare_colours(
-    flight: &Flight,
-    files: &[PhotoFile],
-    evidence: &[Evidence],
-    progress: &Progress,
-) -> Result<Vec<(usize, Colours)>, Fault> {
-    let photos = &flight.parts().photos;
-    let surface = &flight.parts().surface;
-    let why_not = match (surface.is_part(), surface.colors().is_empty()) {
-        (true, _) => Some("not looked at: only a part of the surface was read"),
-        (false, true) => Some("the surface has no colours"),
-        (false, false) => None,
-    };
-    progress.stage("comparing colours");
-    let mut compared = Vec::new();
-    for (index, (file, evidence)) in files.iter().zip(evidence).enumerate() {
-        progress.advance(index as u64, photos.len() as u64)?;
-        if evidence.colours != ColoursFound::NotCompared {
-            continue;
-        }
-        let colours = match why_not {
-            Some(why) => Colours::Not(why.to_owned()),
-            None => match file.pixels() {
-                None => Colours::Not("no image file".to_owned()),
-                Some(Ok(pixels)) => Colours::of_photo(flight, index, &pixels),
-                Some(Err(error)) => Colours::Unreadable(error.fault.to_string()),
-            },
-        };
-        compared.push((index, colours));
-    }
-    Ok(compared)
-}
-
-/// Compares the colours of the photos that nobody has compared yet, and tells the review.
-///
-/// # Errors
-/// Where the work was cancelled.
-pub fn compare_all_colours(
-    review: &mut Review,
-    files: &[PhotoFile],
-    progress: &Progress,
-) -> Result<(), Fault> {
-    let evidence = &review.looked_up().evidence;
-    let compared = compare_colours(review.flight(), files, evidence, progress)?;
-    let found = compared.into_iter();
-    review.take_colours(found.map(|(photo, colours)| (photo, colours.doubt().into())));
-    Ok(())
 }

@@ -1,7 +1,9 @@
 //! A flight's health at a glance: its unit, coordinate system, up axis, colours, metadata, holes, points, photos.
 //! Each is good, or says in one sentence what is not and what mends it; every front end shows these words.
 
-use crate::flight::{ColoursFound, Doubt, PhotoFileState, PhotoReview, Review};
+use crate::flight::{
+    ColoursFound, Doubt, Evidence, PhotoFileState, PhotoReview, Review, TogetherFound,
+};
 use crate::open::FlightReconstruction;
 use crate::surface::UpAxis;
 
@@ -280,17 +282,34 @@ fn up(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
 
 fn colours(review: &Review) -> HealthFinding {
     let item = HealthItem::Colours;
-    let (other, reason) = doubted(review, Doubt::is_of_colours);
+    let (other, reason) = doubted(review, Doubt::is_of_pixels);
     if other > 0 {
         let says = format!("{}: {reason}.", share(other, review));
         return of(item, Health::Bad, share(other, review), says);
+    }
+    let evidence = &review.looked_up().evidence;
+    let (there, compared) = seen_by_others(evidence);
+    let together = match there {
+        0 => String::new(),
+        _ => format!(
+            " {} see it with photos beside them where it is.",
+            share(there, review)
+        ),
+    };
+    if review.flight().parts().surface.colors().is_empty() && there > 0 {
+        let says = format!("The surface has no colours.{together}");
+        let health = if 2 * there > compared {
+            Health::Good
+        } else {
+            Health::Unknown
+        };
+        return of(item, health, "none", says);
     }
     if review.flight().parts().surface.colors().is_empty() {
         let says = "The surface has no colours: nothing says whether the photos show this pile."
             .to_owned();
         return of(item, Health::Unknown, "none", says).with(Remedy::AddSurface);
     }
-    let evidence = &review.looked_up().evidence;
     let is_compared = |colours: &ColoursFound| *colours != ColoursFound::NotCompared;
     let compared = evidence.iter().filter(|e| is_compared(&e.colours)).count();
     let found = files_found(review);
@@ -302,10 +321,21 @@ fn colours(review: &Review) -> HealthFinding {
         return of(item, Health::Unknown, "not compared", says);
     }
     let says = format!(
-        "Nothing in the colours of {} speaks against the surface.",
+        "Nothing in the colours of {} speaks against the surface.{together}",
         share(compared, review)
     );
     of(item, Health::Good, "same", says)
+}
+
+/// How many photos see the surface where it is together with those beside them, and of how many they were compared.
+fn seen_by_others(evidence: &[Evidence]) -> (usize, usize) {
+    let count =
+        |is: fn(&TogetherFound) -> bool| evidence.iter().filter(|e| is(&e.together)).count();
+    let there = count(|together| *together == TogetherFound::There);
+    (
+        there,
+        count(|together| *together != TogetherFound::NotCompared),
+    )
 }
 
 fn exif(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {

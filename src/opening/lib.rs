@@ -10,6 +10,7 @@
 //! flown        a mission against the flight that came of it
 //! health       a flight's unit, coordinates, colours, ... at a glance
 //! in_part      flights whose cloud is larger than the memory
+//! evidence     what speaks against scales, as far as files' headers and places tell; pixels: as far as the photos show
 //! info         what a file holds, for `fragscale info`
 //! outlines     outlines of fragments that were saved beside a flight; of_others: those that other tools made
 //! named_engine a network that the user names, to outline fragments
@@ -36,6 +37,7 @@ mod outlines;
 mod photo_checks;
 mod photo_files;
 mod photo_places;
+mod pixels;
 mod second_surface;
 mod world;
 
@@ -49,7 +51,7 @@ use fragscale_fragmentation as fragmentation;
 
 pub use areas::{Areas, places};
 pub use dropped::Dropped;
-pub use evidence::{Colours, compare_all_colours, compare_colours, look_up};
+pub use evidence::look_up;
 pub use flown::{ComparedFlight, FlightOfMission, compare_flown};
 pub use georeferencing::{
     BehindFlight, GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind,
@@ -69,6 +71,10 @@ pub use origin::{FlightOrigin, path_from};
 pub use outlines::{OutlinesOfOthers, OutlinesRead, outline_files, read_outlines, saved_outlines};
 
 pub use photo_files::{PhotoFile, apart_from_photos};
+pub use pixels::{
+    Colours, ComparedPixels, PhotosTogether, Together, compare_all_pixels, compare_pixels,
+    take_compared,
+};
 pub use second_surface::{SecondSurface, StatedWorld, second_surface};
 
 #[cfg(test)]

@@ -39,6 +39,7 @@ mod mission;
 mod node_odm;
 mod on_surface;
 mod overwriting;
+mod photos_together;
 mod plan;
 mod plan_areas;
 mod plan_surveys;

@@ -31,7 +31,7 @@ use crate::fragments::Fragments;
 use crate::geometry::{Bounds, LevelBox, LocalFrame};
 use crate::linked::{LinkedPoint, PointFrom};
 use crate::map::FlightMap;
-use crate::opening::{Colours, HealthFinding, StatedOfFlight, flight_health};
+use crate::opening::{Colours, HealthFinding, StatedOfFlight, Together, flight_health};
 use crate::photo_view::PhotoView;
 use crate::planning::Planning;
 use crate::render::{LargePhoto, Orbit, PhotoImage, PhotoZoom, SurfaceBuffers, drawn_ground};
@@ -423,6 +423,14 @@ impl OpenFlight {
     /// Takes what the engineer has decided of photos.
     pub fn take_decisions(&mut self) {
         self.review.take_decisions(&self.history.now().decisions);
+        self.arrange();
+    }
+
+    /// Takes what photos and those beside them see.
+    pub fn take_together(&mut self, found: &[(usize, Together)]) {
+        let found = found.iter();
+        self.review
+            .take_together(found.map(|(photo, together)| (*photo, together.into())));
         self.arrange();
     }
 

@@ -61,7 +61,7 @@ impl State {
             let changed: Vec<String> = changed.iter().map(|path| changed_in_words(path)).collect();
             warnings.extend(changed.iter().cloned());
             // Those that the window has not come to yet.
-            let compared = opening::compare_all_colours(&mut review, &photo_files, progress);
+            let compared = opening::compare_all_pixels(&mut review, &photo_files, progress);
             compared.map_err(|fault| fault.to_string())?;
             let selected = review.going_along(Along::Trusted);
             let files = photo_files.iter().map(|file| file.path.clone());

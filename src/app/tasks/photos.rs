@@ -8,12 +8,12 @@ use image::buffer::ConvertBuffer;
 
 use super::work::Task;
 use crate::camera::Camera;
-use crate::flight::ColoursFound;
+use crate::flight::{ColoursFound, TogetherFound};
 use crate::formats::photos::photo_metadata;
 use crate::formats::{self, FileError};
 use crate::jobs::Progress;
 use crate::open_flight::{Preview, PreviewPicture};
-use crate::opening::Colours;
+use crate::opening::{Colours, PhotosTogether, Together};
 use crate::picture;
 use crate::render::{LargePhoto, PhotoImage};
 use crate::scale::ImageKind;
@@ -65,6 +65,10 @@ impl State {
         let steps = self.work.steps_of_a_job();
         let context = self.context.clone();
         let work = move |progress: &Progress| {
+            // Cancelled, nobody looks at any photo.
+            let Ok(mut together) = PhotosTogether::new(&flight, &files, progress) else {
+                return Vec::new();
+            };
             progress.stage("reading photos");
             let photos = &flight.parts().photos;
             for (index, (photo, file)) in photos.iter().zip(files.iter()).enumerate() {
@@ -78,7 +82,11 @@ impl State {
                 let image = flight.parts().image;
                 let metadata = photo_metadata::read_file(path).ok();
                 let time = metadata.and_then(|metadata| metadata.time);
-                let thumbnail = match read_photo(path) {
+                let read = read_photo(path);
+                if let Ok(large) = &read {
+                    together.take(&flight, index, large, progress);
+                }
+                let thumbnail = match read {
                     Ok(large) => Thumbnail {
                         flight: number,
                         photo: index,
@@ -109,9 +117,12 @@ impl State {
                 }
                 context.request_repaint();
             }
+            together.found(&flight)
         };
-        // All have been sent by then.
-        self.start(Task::THUMBNAILS, work, |_, ()| ());
+        // All thumbnails have been sent by then.
+        self.start(Task::THUMBNAILS, work, move |state, found| {
+            state.take_together(number, &found);
+        });
     }
 
     /// Reads the selected photo for the inspector; its tint comes with it.
@@ -176,6 +187,26 @@ impl State {
                 });
             }
         });
+    }
+
+    /// Takes what photos of an opened flight and those beside them see.
+    fn take_together(&mut self, flight: u64, found: &[(usize, Together)]) {
+        let Some(open) = self.open.as_mut().filter(|open| open.number == flight) else {
+            return;
+        };
+        let is_new = |photo: usize| {
+            let evidence = open.review.looked_up().evidence.get(photo);
+            evidence.is_some_and(|evidence| !matches!(evidence.together, TogetherFound::Against(_)))
+        };
+        let said = found.iter().filter_map(|(photo, together)| {
+            let doubt = together.doubt().filter(|_| is_new(*photo))?;
+            Some(format!("photo '{}': {doubt}", open.name(*photo)))
+        });
+        let said: Vec<String> = said.collect();
+        open.take_together(found);
+        for said in said {
+            self.say(Severity::Warning, &said);
+        }
     }
 
     fn take_thumbnail(&mut self, thumbnail: Thumbnail) {

@@ -4,7 +4,7 @@
 use super::Doubt;
 
 /// All words.
-const KINDS: [&str; 41] = [
+const KINDS: [&str; 42] = [
     "no-scale",
     "off-surface",
     "no-point",
@@ -45,6 +45,7 @@ const KINDS: [&str; 41] = [
     "flying-height",
     "laser-range",
     "other-colours",
+    "other-distance",
     "flipped",
 ];
 
@@ -104,6 +105,7 @@ impl Doubt {
             Self::FlyingHeight { .. } => "flying-height",
             Self::LaserRange { .. } => "laser-range",
             Self::OtherColours { .. } => "other-colours",
+            Self::OtherDistance { .. } => "other-distance",
             Self::Flipped { .. } => "flipped",
         }
     }

@@ -268,6 +268,17 @@ pub enum Doubt {
         /// Of so many points.
         points: usize,
     },
+    /// The photo and one beside it see the surface nearer or farther than it is.
+    OtherDistance {
+        /// The name of the photo beside it.
+        other: String,
+        /// At so many times its distance.
+        factor: f64,
+        /// The mean correlation of the photos' patches there.
+        there: f64,
+        /// Their mean correlation where the surface is.
+        here: f64,
+    },
     /// The photo's colours match those of the surface when it is turned over.
     Flipped {
         /// Pearson's correlation as the photo is.
@@ -297,11 +308,20 @@ impl Doubt {
     /// Whether the photo does not stand where one of this surface can, or does not show it: its scale
     /// is that of something else.
     pub fn is_of_the_pile(&self) -> bool {
-        matches!(self, Self::FarFromSurface { .. } | Self::UnderSurface) || self.is_of_colours()
+        let is_of_place = matches!(
+            self,
+            Self::FarFromSurface { .. } | Self::UnderSurface | Self::OtherDistance { .. }
+        );
+        is_of_place || self.is_of_colours()
     }
 
     /// Whether the photo's colours say it.
     pub fn is_of_colours(&self) -> bool {
         matches!(self, Self::OtherColours { .. } | Self::Flipped { .. })
+    }
+
+    /// Whether what the photo shows says it.
+    pub fn is_of_pixels(&self) -> bool {
+        self.is_of_colours() || matches!(self, Self::OtherDistance { .. })
     }
 }

@@ -289,6 +289,22 @@ impl fmt::Display for Doubt {
                 f,
                 "its colours do not match those of the surface where its pose says (r = {correlation:.2} at {points} points; a right pose gives about 0.5 and more): check its pose, its camera, whether it is this photo and this surface"
             ),
+            Self::OtherDistance {
+                other,
+                factor,
+                there,
+                here,
+            } => {
+                let percent = (factor - 1.0).abs() * 100.0;
+                let (place, wrong) = match *factor > 1.0 {
+                    true => ("farther away", "large"),
+                    false => ("nearer", "small"),
+                };
+                write!(
+                    f,
+                    "it and {other} see the surface {percent:.1} % {place} than it is (their pictures match there with r = {there:.2}, on the surface with {here:.2}), and its scale is too {wrong} by about as much: look whether surface, poses, heights and focal length are of one flight and one day"
+                )
+            }
             Self::Flipped {
                 correlation,
                 flipped,

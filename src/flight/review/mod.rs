@@ -14,7 +14,8 @@ use crate::fault::Fault;
 use crate::flight::decision::of_photo;
 use crate::flight::verdict::{Facts, Judged, judge};
 use crate::flight::{
-    ColoursFound, Decision, Evidence, Flight, Limits, LookedUp, Outcome, PhotoFileState, Verdict,
+    ColoursFound, Decision, Evidence, Flight, Limits, LookedUp, Outcome, PhotoFileState,
+    TogetherFound, Verdict,
 };
 use crate::jobs::Progress;
 use crate::scale::{FieldFacts, ScalePair, StatedErrors, ViewFacts};
@@ -143,6 +144,7 @@ impl Review {
         let before = self.looked_up.evidence.iter_mut();
         for (evidence, before) in looked_up.evidence.iter_mut().zip(before) {
             evidence.colours = std::mem::take(&mut before.colours);
+            evidence.together = std::mem::take(&mut before.together);
         }
         self.flight = flight;
         self.outcomes = Arc::new(outcomes);
@@ -167,6 +169,16 @@ impl Review {
         if is_against {
             self.judge();
         }
+    }
+
+    /// Takes what photos and those beside them see, each with its place in the flight, and judges again.
+    pub fn take_together(&mut self, found: impl IntoIterator<Item = (usize, TogetherFound)>) {
+        for (photo, found) in found {
+            if let Some(evidence) = self.looked_up.evidence.get_mut(photo) {
+                evidence.together = found;
+            }
+        }
+        self.judge();
     }
 
     /// Takes other limits, and judges again.

@@ -72,6 +72,7 @@ impl Doubt {
             Self::Sideways { .. } => (OnPhoto::Sides, InView::Footprint),
             Self::FlatView { .. } => (OnPhoto::TopBottom, InView::FromSide),
             Self::UnderSurface
+            | Self::OtherDistance { .. }
             | Self::OtherHeights { .. }
             | Self::FlyingHeight { .. }
             | Self::LaserRange { .. } => (OnPhoto::Nothing, InView::FromSide),

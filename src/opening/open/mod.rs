@@ -28,7 +28,6 @@ use std::sync::Arc;
 
 use image::RgbImage;
 
-use crate::evidence::compare_all_colours;
 use crate::fault::Fault;
 use crate::files::{FileError, Inputs, Recording};
 use crate::flight::{Flight, FlightFile, FlightSettings, Limits, LookedUp, Review};
@@ -38,6 +37,7 @@ use crate::jobs::Progress;
 use crate::origin::FlightOrigin;
 use crate::photo_files::PhotoFile;
 use crate::picture;
+use crate::pixels::compare_all_pixels;
 use crate::surface::{Cloud, UpAxis};
 
 pub use within::with_flight;
@@ -140,14 +140,14 @@ impl Opened {
         picture::decode(&bytes)
     }
 
-    /// Reviews the flight: with its footprints, its scale fields, and with the colours of its photos, which takes
+    /// Reviews the flight: with its footprints, its scale fields, and with what its photos show, which takes
     /// longest, because every photo is read.
     ///
     /// # Errors
     /// Where the surface cannot be met, or the work was cancelled.
     pub fn review(&self, limits: &Limits, progress: &Progress) -> Result<Review, Fault> {
         let mut review = self.review_without_colours(limits, progress)?;
-        compare_all_colours(&mut review, &self.photo_files, progress)?;
+        compare_all_pixels(&mut review, &self.photo_files, progress)?;
         Ok(review)
     }
 

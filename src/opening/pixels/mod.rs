@@ -1,0 +1,104 @@
+//! What the pixels of photos say against their scales: every photo is read once, and compared with the colours of the surface and
+//! with the photos beside it.
+//!
+//! ```text
+//! colours   a photo and the colours of the surface
+//! pairs     which photos are beside each other
+//! together  two photos and the place of the surface
+//! ```
+
+mod colours;
+mod pairs;
+mod together;
+
+pub use colours::Colours;
+pub use together::{PhotosTogether, Together};
+
+use crate::fault::Fault;
+use crate::flight::{ColoursFound, Evidence, Flight, Review, TogetherFound};
+use crate::jobs::Progress;
+use crate::photo_files::PhotoFile;
+
+/// What was found, each with the photo's place in the flight.
+#[derive(Debug, Clone, Default)]
+pub struct ComparedPixels {
+    /// Of those whose colours nobody had compared.
+    pub colours: Vec<(usize, Colours)>,
+    /// Of those that nobody had compared with those beside them.
+    pub together: Vec<(usize, Together)>,
+}
+
+/// Reads the photos and compares them, as far as nobody has yet by `evidence`, whose list like `files` is parallel to the
+/// flight's photos.
+///
+/// # Errors
+/// Where the surface cannot be met, or the work was cancelled.
+pub fn compare_pixels(
+    flight: &Flight,
+    files: &[PhotoFile],
+    evidence: &[Evidence],
+    progress: &Progress,
+) -> Result<ComparedPixels, Fault> {
+    let parts = flight.parts();
+    let why_no_colours = match (parts.surface.is_part(), parts.surface.colors().is_empty()) {
+        (true, _) => Some("not looked at: only a part of the surface was read"),
+        (false, true) => Some("the surface has no colours"),
+        (false, false) => None,
+    };
+    let is_new = |evidence: &Evidence| evidence.together == TogetherFound::NotCompared;
+    let mut together = match evidence.iter().any(is_new) {
+        true => PhotosTogether::new(flight, files, progress)?,
+        false => PhotosTogether::default(),
+    };
+    progress.stage("comparing photos");
+    let mut colours = Vec::new();
+    for (index, (file, evidence)) in files.iter().zip(evidence).enumerate() {
+        progress.advance(index as u64, parts.photos.len() as u64)?;
+        let wants_colours = evidence.colours == ColoursFound::NotCompared;
+        let of_colours = match why_no_colours.filter(|_| !together.wants(index)) {
+            Some(why) => Colours::Not(why.to_owned()),
+            None if !wants_colours && !together.wants(index) => continue,
+            None => match file.pixels() {
+                None => Colours::Not("no image file".to_owned()),
+                Some(Ok(pixels)) => {
+                    together.take(flight, index, &pixels, progress);
+                    match why_no_colours {
+                        Some(why) => Colours::Not(why.to_owned()),
+                        None => Colours::of_photo(flight, index, &pixels),
+                    }
+                }
+                Some(Err(error)) => Colours::Unreadable(error.fault.to_string()),
+            },
+        };
+        if wants_colours {
+            colours.push((index, of_colours));
+        }
+    }
+    Ok(ComparedPixels {
+        colours,
+        together: together.found(flight),
+    })
+}
+
+/// Compares the photos as far as nobody has yet, and tells the review.
+///
+/// # Errors
+/// Where the surface cannot be met, or the work was cancelled.
+pub fn compare_all_pixels(
+    review: &mut Review,
+    files: &[PhotoFile],
+    progress: &Progress,
+) -> Result<(), Fault> {
+    let evidence = &review.looked_up().evidence;
+    let compared = compare_pixels(review.flight(), files, evidence, progress)?;
+    take_compared(review, &compared);
+    Ok(())
+}
+
+/// Tells the review what was found.
+pub fn take_compared(review: &mut Review, compared: &ComparedPixels) {
+    let colours = compared.colours.iter();
+    review.take_colours(colours.map(|(photo, colours)| (*photo, colours.doubt().into())));
+    let together = compared.together.iter();
+    review.take_together(together.map(|(photo, together)| (*photo, together.into())));
+}

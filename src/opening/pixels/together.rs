@@ -1,0 +1,194 @@
+//! Whether photos and those beside them see the surface where it is.
+
+use std::collections::BTreeMap;
+
+use image::RgbImage;
+
+use super::pairs::pairs;
+use crate::fault::Fault;
+use crate::flight::{Doubt, Flight, TogetherFound};
+use crate::jobs::Progress;
+use crate::photo_files::PhotoFile;
+use crate::picture::{PairSight, Patches, SeenAt, Sighted, SmallPhoto, seen_at};
+use crate::scale::ImageKind;
+
+/// What a photo and those beside it see.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Together {
+    /// The name of the photo beside it that tells most.
+    pub other: String,
+    /// Where the two see the surface.
+    pub sight: PairSight,
+}
+
+impl Together {
+    /// What they say against the photo.
+    pub fn doubt(&self) -> Option<Doubt> {
+        match self.sight {
+            PairSight::Elsewhere(SeenAt {
+                factor,
+                there,
+                here,
+                ..
+            }) => Some(Doubt::OtherDistance {
+                other: self.other.clone(),
+                factor,
+                there,
+                here,
+            }),
+            PairSight::There(_) | PairSight::Unclear => None,
+        }
+    }
+
+    /// The same in a few words, for lists of all photos.
+    pub fn in_words(&self) -> String {
+        let other = &self.other;
+        match self.sight {
+            PairSight::There(off) => {
+                format!(
+                    "with {other} it sees the surface where it is, to {:.1} %",
+                    off * 100.0
+                )
+            }
+            PairSight::Elsewhere(seen) => format!(
+                "with {other} it sees the surface at {:.1} % of its distance",
+                seen.factor * 100.0
+            ),
+            PairSight::Unclear => format!("with {other} it does not tell where the surface is"),
+        }
+    }
+}
+
+impl From<&Together> for TogetherFound {
+    fn from(together: &Together) -> Self {
+        match (together.doubt(), together.sight) {
+            (Some(doubt), _) => Self::Against(doubt),
+            (None, PairSight::There(_)) => Self::There,
+            (None, _) => Self::Unclear,
+        }
+    }
+}
+
+/// Compares photos with those beside them, as they are read: each is kept, small, until all beside it were there.
+#[derive(Debug, Default)]
+pub struct PhotosTogether {
+    /// Which are compared.
+    pairs: Vec<[usize; 2]>,
+    /// Those that were read, and wait for others, with their patches.
+    kept: BTreeMap<usize, (SmallPhoto, Patches)>,
+    /// What was seen, parallel to the pairs; `None` while a photo is not read.
+    sights: Vec<Option<PairSight>>,
+}
+
+impl PhotosTogether {
+    /// Chooses which photos of a flight are compared, of those whose files are there: none over a surface of which only a
+    /// part was read.
+    ///
+    /// # Errors
+    /// Where the work was cancelled.
+    pub fn new(flight: &Flight, files: &[PhotoFile], progress: &Progress) -> Result<Self, Fault> {
+        let pairs = match flight.parts().surface.is_part() {
+            true => Vec::new(),
+            false => pairs(flight, files, progress)?,
+        };
+        Ok(Self {
+            sights: vec![None; pairs.len()],
+            pairs,
+            kept: BTreeMap::new(),
+        })
+    }
+
+    /// Whether a photo is compared with another.
+    pub fn wants(&self, photo: usize) -> bool {
+        self.pairs.iter().any(|pair| pair.contains(&photo))
+    }
+
+    /// Takes the pixels of a photo as shot, and compares it with those beside it that were read before.
+    pub fn take(&mut self, flight: &Flight, photo: usize, pixels: &RgbImage, progress: &Progress) {
+        if !self.wants(photo) {
+            return;
+        }
+        // A photo of another size than its camera's is doubted for that.
+        let Some(small) = SmallPhoto::of(pixels, flight.camera(&flight.parts().photos[photo]))
+        else {
+            return;
+        };
+        let posed = &flight.parts().photos[photo];
+        let (grid, image) = (Patches::grid(&small), ImageKind::Undistorted);
+        // What shows no surface is compared with nothing.
+        let Ok(field) = flight.field(posed, image, grid, progress) else {
+            return;
+        };
+        let patches = Patches::of(&small, &field);
+        self.kept.insert(photo, (small, patches));
+        for (pair, sight) in self.pairs.iter().zip(&mut self.sights) {
+            if pair.contains(&photo)
+                && let [Some(first), Some(second)] = pair.map(|of| self.kept.get(&of))
+            {
+                let in_second = seen_at(&first.1, &sighted(flight, pair[1], &second.0));
+                let in_first = seen_at(&second.1, &sighted(flight, pair[0], &first.0));
+                *sight = Some(PairSight::of(in_second, in_first));
+            }
+        }
+        let waits = |of: usize| {
+            let mut open = self.pairs.iter().zip(&self.sights);
+            open.any(|(pair, sight)| sight.is_none() && pair.contains(&of))
+        };
+        let done: Vec<usize> = self.kept.keys().copied().filter(|of| !waits(*of)).collect();
+        for of in done {
+            self.kept.remove(&of);
+        }
+    }
+
+    /// What the photos that were compared see, each with its place in the flight.
+    pub fn found(&self, flight: &Flight) -> Vec<(usize, Together)> {
+        let photos = &flight.parts().photos;
+        let of_photo = |photo: usize| {
+            let its = self
+                .pairs
+                .iter()
+                .zip(&self.sights)
+                .filter_map(|(pair, sight)| {
+                    let other = pair.iter().find(|of| **of != photo)?;
+                    pair.contains(&photo).then_some((*other, (*sight)?))
+                });
+            let (other, sight) = said_by(&its.collect::<Vec<_>>())?;
+            let other = photos[other].name.clone();
+            Some((photo, Together { other, sight }))
+        };
+        (0..photos.len()).filter_map(of_photo).collect()
+    }
+}
+
+/// What the pairs of a photo say of it, each with the other photo. One of two pairs may be wrong by the other photo's error: the surface is
+/// elsewhere if more of them see it elsewhere than where it is.
+fn said_by(pairs: &[(usize, PairSight)]) -> Option<(usize, PairSight)> {
+    let tells = |sight: &PairSight| match sight {
+        PairSight::There(off) => -off,
+        PairSight::Elsewhere(seen) => seen.there,
+        PairSight::Unclear => 0.0,
+    };
+    let best = |wanted: fn(&PairSight) -> bool| {
+        let wanted = pairs.iter().filter(|(_, sight)| wanted(sight));
+        let best = wanted
+            .clone()
+            .max_by(|a, b| tells(&a.1).total_cmp(&tells(&b.1)));
+        (best, wanted.count())
+    };
+    let (there, of_there) = best(|sight| matches!(sight, PairSight::There(_)));
+    let (elsewhere, of_elsewhere) = best(|sight| matches!(sight, PairSight::Elsewhere(_)));
+    let said = match of_elsewhere > of_there {
+        true => elsewhere,
+        false => there,
+    };
+    said.or(pairs.first()).copied()
+}
+
+fn sighted<'a>(flight: &'a Flight, photo: usize, small: &'a SmallPhoto) -> Sighted<'a> {
+    let posed = &flight.parts().photos[photo];
+    Sighted {
+        photo: small,
+        camera: flight.camera(posed),
+        pose: &posed.pose,
+    }
+}

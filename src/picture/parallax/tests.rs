@@ -1,0 +1,193 @@
+//! Photos of a rough floor that is known: rays meet it in closed form step by step, so nothing of the code under test makes them.
+
+use glam::{DVec2, DVec3};
+use image::{Rgb, RgbImage};
+
+use super::*;
+use crate::camera::Distortion;
+use crate::jobs::Progress;
+use crate::scale::{ImageKind, ScaleField};
+use crate::surface::{Cloud, Surface};
+
+/// Half the floor's width, metres.
+const HALF: f64 = 14.0;
+
+fn camera() -> Camera {
+    Camera {
+        name: String::new(),
+        width: 480,
+        height: 360,
+        fx: 400.0,
+        fy: 400.0,
+        cx: 240.0,
+        cy: 180.0,
+        skew: 0.0,
+        distortion: Distortion::None,
+    }
+}
+
+fn height(x: f64, y: f64) -> f64 {
+    0.3 * (1.1 * x).sin() * (0.9 * y).cos() + 0.15 * (2.3 * x + 1.7 * y).sin()
+}
+
+/// Brightness of cells of a quarter of a metre, each its own, without steps between them.
+fn shade(x: f64, y: f64) -> f64 {
+    let cell = |i: f64, j: f64| {
+        let mixed = ((i * 127.1 + j * 311.7).sin() * 43_758.545_3).fract().abs();
+        40.0 + 180.0 * mixed
+    };
+    let (u, v) = (x * 4.0, y * 4.0);
+    let (i, j) = (u.floor(), v.floor());
+    let (s, t) = (u - i, v - j);
+    let above = cell(i, j) * (1.0 - s) + cell(i + 1.0, j) * s;
+    let below = cell(i, j + 1.0) * (1.0 - s) + cell(i + 1.0, j + 1.0) * s;
+    above * (1.0 - t) + below * t
+}
+
+/// The photo of the floor.
+fn photo(pose: &Pose) -> RgbImage {
+    let camera = camera();
+    RgbImage::from_fn(camera.width, camera.height, |column, row| {
+        let pixel = DVec2::new(f64::from(column), f64::from(row)) + 0.5;
+        let d = pose.rotation * camera.direction_undistorted(pixel);
+        // Fixed-point steps along a steep ray: the floor's slope is below a half.
+        let mut t = -pose.center.z / d.z;
+        for _ in 0..40 {
+            let p = pose.center + d * t;
+            t = (height(p.x, p.y) - pose.center.z) / d.z;
+        }
+        let p = pose.center + d * t;
+        Rgb([shade(p.x, p.y).round() as u8; 3])
+    })
+}
+
+/// The floor as points, moved up.
+fn floor(up: f64) -> Surface {
+    let side = 180_i32;
+    let points = (0..side * side).map(|at| {
+        let place = |k: i32| (f64::from(k) + 0.5) / f64::from(side) * 2.0 * HALF - HALF;
+        let (x, y) = (place(at % side), place(at / side));
+        DVec3::new(x, y, height(x, y) + up)
+    });
+    Surface::new(Cloud {
+        points: points.collect(),
+        ..Cloud::default()
+    })
+    .unwrap()
+}
+
+/// Two photos from 10 m, 3 m apart, one of them turned upside down.
+fn poses() -> [Pose; 2] {
+    [
+        Pose::from_tilt_pan(DVec3::new(-1.5, 0.0, 10.0), [90.0, 0.0]),
+        Pose::from_tilt_pan(DVec3::new(1.5, 0.4, 10.0), [85.0, 180.0]),
+    ]
+}
+
+/// All patches of a photo on a surface.
+fn patches(surface: &Surface, sighted: &Sighted<'_>) -> Patches {
+    let (grid, image) = (Patches::grid(sighted.photo), ImageKind::Undistorted);
+    let progress = Progress::default();
+    let field = ScaleField::compute(
+        sighted.camera,
+        sighted.pose,
+        image,
+        grid,
+        surface,
+        &progress,
+    );
+    Patches::of(sighted.photo, &field.unwrap())
+}
+
+/// What the two see of a surface, their cameras being taken for others.
+fn sight(surface: &Surface, photos: &[RgbImage; 2], camera: &Camera) -> [Option<SeenAt>; 2] {
+    let poses = poses();
+    let small = photos
+        .each_ref()
+        .map(|photo| SmallPhoto::of(photo, camera).unwrap());
+    let sighted = [0, 1].map(|at| Sighted {
+        photo: &small[at],
+        camera,
+        pose: &poses[at],
+    });
+    [0, 1].map(|at| {
+        let patches = patches(surface, &sighted[at]);
+        assert!(patches.len() > 500, "{}", patches.len());
+        seen_at(&patches, &sighted[1 - at])
+    })
+}
+
+fn elsewhere(sight: PairSight) -> f64 {
+    match sight {
+        PairSight::Elsewhere(seen) => seen.factor,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Ten metres above a surface that is drawn h too high it is 10 / (10 - h) times as far away in truth.
+#[test]
+fn a_surface_that_lies_elsewhere_is_seen_where_it_is() {
+    let photos = poses().each_ref().map(photo);
+    for up in [-1.0, -0.4, 0.4, 1.5] {
+        let [first, second] = sight(&floor(up), &photos, &camera());
+        let factor = elsewhere(PairSight::of(first, second));
+        assert!(
+            (factor / (10.0 / (10.0 - up)) - 1.0).abs() < 0.006,
+            "{up}: {factor}"
+        );
+    }
+}
+
+#[test]
+fn a_right_surface_is_seen_where_it_is() {
+    let photos = poses().each_ref().map(photo);
+    let [first, second] = sight(&floor(0.0), &photos, &camera());
+    let PairSight::There(off) = PairSight::of(first, second) else {
+        panic!("{first:?} {second:?}");
+    };
+    assert!(off < 0.002, "{off}");
+    assert!(first.is_some_and(|seen| seen.here > 0.8), "{first:?}");
+    // A centimetre in ten metres is not worth a word.
+    let [first, second] = sight(&floor(0.1), &photos, &camera());
+    assert!(
+        matches!(PairSight::of(first, second), PairSight::There(off) if (off - 0.01).abs() < 0.003)
+    );
+}
+
+/// Looked at through a longer lens than it was taken with, the same parallax is that of rock farther away.
+#[test]
+fn a_wrong_focal_length_is_a_wrong_distance() {
+    let photos = poses().each_ref().map(photo);
+    let mut longer = camera();
+    (longer.fx, longer.fy) = (440.0, 440.0);
+    let [first, second] = sight(&floor(0.0), &photos, &longer);
+    let factor = elsewhere(PairSight::of(first, second));
+    assert!((factor - 1.1).abs() < 0.03, "{factor}");
+}
+
+#[test]
+fn other_photos_tell_nothing() {
+    let [first, _] = poses().each_ref().map(photo);
+    // Of another place.
+    let away = Pose::from_tilt_pan(DVec3::new(103.0, 50.0, 10.0), [90.0, 0.0]);
+    let [a, b] = sight(&floor(0.0), &[first.clone(), photo(&away)], &camera());
+    assert_eq!(PairSight::of(a, b), PairSight::Unclear, "{a:?} {b:?}");
+    // Of one colour.
+    let gray = RgbImage::from_pixel(480, 360, Rgb([90; 3]));
+    let small = SmallPhoto::of(&first, &camera()).unwrap();
+    let plain = SmallPhoto::of(&gray, &camera()).unwrap();
+    let (camera, poses) = (camera(), poses());
+    let of = |photo, pose| Sighted {
+        photo,
+        camera: &camera,
+        pose,
+    };
+    let surface = floor(0.0);
+    let of_first = patches(&surface, &of(&small, &poses[0]));
+    assert_eq!(seen_at(&of_first, &of(&plain, &poses[1])), None);
+    assert!(patches(&surface, &of(&plain, &poses[1])).is_empty());
+    // From one place there is no parallax.
+    assert_eq!(seen_at(&of_first, &of(&small, &poses[0])), None);
+    // The size of another camera.
+    assert!(SmallPhoto::of(&RgbImage::new(48, 36), &camera).is_none());
+}

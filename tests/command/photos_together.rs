@@ -1,0 +1,84 @@
+//! Photos that show the same rock from two places say where the surface is: the bundled flight, whose true surface is known, and
+//! the same with its surface moved, which neither colours nor metadata tell.
+
+use std::fs;
+use std::path::Path;
+
+use crate::common::{scales_json, stdout_of};
+
+/// Bytes of a vertex in the flight's cloud: three doubles, three bytes of colour.
+const VERTEX: usize = 27;
+
+/// Copies the bundled flight with its cloud `up` metres higher and without colours.
+fn without_colours(folder: &Path, up: f64) {
+    let from = Path::new("assets/sample");
+    fs::create_dir(folder.join("photos")).expect("made");
+    for photo in fs::read_dir(from.join("photos")).expect("listed").flatten() {
+        fs::copy(photo.path(), folder.join("photos").join(photo.file_name())).expect("copied");
+    }
+    for name in ["flight.toml", "ost.yaml", "poses.csv"] {
+        fs::copy(from.join(name), folder.join(name)).expect("copied");
+    }
+    let bytes = fs::read(from.join("pile.ply")).expect("read");
+    let end = b"end_header\n";
+    let start = bytes.windows(end.len()).position(|window| window == end);
+    let start = start.expect("a header") + end.len();
+    let mut out = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\nend_header\n",
+        (bytes.len() - start) / VERTEX
+    )
+    .into_bytes();
+    for vertex in bytes[start..].chunks_exact(VERTEX) {
+        out.extend(&vertex[..16]);
+        let z = f64::from_le_bytes(vertex[16..24].try_into().expect("8 bytes"));
+        out.extend((z + up).to_le_bytes());
+    }
+    fs::write(folder.join("pile.ply"), out).expect("written");
+}
+
+/// 3 cm too high under cameras 0.45 m above it, the rock is 0.03 / 0.45 = 6.7 % farther away than the surface; how far two photos of so
+/// rough a pile tell, whose stones lie wrongly under the patches besides, to a third.
+#[test]
+fn a_surface_that_is_too_high_is_seen_farther_away() {
+    let folder = tempfile::tempdir().expect("a folder");
+    without_colours(folder.path(), 0.03);
+    let scales = scales_json(folder.path(), &[]);
+    let photos = scales["photos"].as_array().expect("photos");
+    let mut doubted = 0;
+    for photo in photos {
+        let reasons = photo["reasons"].to_string();
+        let name = photo["photo"].as_str().expect("a name");
+        if !reasons.contains("farther away than it is") {
+            continue;
+        }
+        doubted += 1;
+        assert_eq!(photo["verdict"], "check", "{name}");
+        let (_, said) = reasons.split_once("see the surface ").expect("how far");
+        let percent: f64 = said
+            .split_once(" %")
+            .expect("percent")
+            .0
+            .parse()
+            .expect("a number");
+        let true_percent = 100.0 * 0.03 / 0.45;
+        assert!(
+            (percent / true_percent - 1.0).abs() < 0.34,
+            "{name}: {percent}"
+        );
+    }
+    // The first six of nine overlap; the others do not tell.
+    assert_eq!(doubted, 6, "{scales}");
+}
+
+#[test]
+fn a_right_surface_is_seen_where_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    without_colours(folder.path(), 0.0);
+    let text = stdout_of(&["check", folder.path().to_str().expect("UTF-8")]);
+    let there = text
+        .lines()
+        .filter(|line| line.contains("it sees the surface where it is, to 0."));
+    assert_eq!(there.count(), 6, "{text}");
+    let scales = scales_json(folder.path(), &[]);
+    assert!(!scales.to_string().contains("than it is"), "{scales}");
+}
