@@ -52,14 +52,22 @@ fn decimals_allowed(value: f64, low: f64, high: f64) -> Option<i32> {
     has_width.then(|| decimals_of(half))
 }
 
-/// Half the width of an interval in percent of its number, such as "2 %"; `None` where it has none, or a millionth of the number.
+/// How far the farther end of an interval is from its number, in percent of it, such as "2 %": what stands behind a "±" holds on both sides.
+/// `None` where it has no width, or a millionth of the number.
 pub fn interval_percent(value: f64, low: f64, high: f64) -> Option<String> {
-    let percent = ((high - low) / 2.0 / value * 100.0).abs();
+    let percent = farther_percent(value, low, high);
     let is_some = is_width(percent) && percent.is_finite();
     // One digit, two of what begins with 1: nobody reads more from a percentage.
     let digits = if leading(percent) < 1.95 { 2 } else { 1 };
     let decimals = decimals_for(percent, digits).max(0);
     is_some.then(|| format!("{} %", with_decimals(percent, decimals)))
+}
+
+/// How far the farther end of an interval is from its number, in percent of it.
+pub fn farther_percent(value: f64, low: f64, high: f64) -> f64 {
+    let farther = (high - value).max(value - low);
+    // Of a number outside its interval, too, nothing is known better than by half its width.
+    (farther.max((high - low) / 2.0) / value * 100.0).abs()
 }
 
 /// Down to which decimal place a deviation says something: two digits of it below 3.55, one above, so that

@@ -154,13 +154,15 @@ impl State {
             Command::Undo => {
                 // What was wrong with the step that is taken back is no matter any more; the log keeps it.
                 self.notice = None;
-                self.undo_picks_or_settings(History::undo, History::undo, History::undo);
+                let changed =
+                    self.undo_picks_or_settings(History::undo, History::undo, History::undo);
                 // Else the last word at the foot of the window may be "saved".
-                self.say(Severity::Note, "undone");
+                self.say(Severity::Note, &with_what("undone", &changed));
             }
             Command::Redo => {
-                self.undo_picks_or_settings(History::redo, History::redo, History::redo);
-                self.say(Severity::Note, "done again");
+                let changed =
+                    self.undo_picks_or_settings(History::redo, History::redo, History::redo);
+                self.say(Severity::Note, &with_what("done again", &changed));
             }
             Command::Set(settings) => self.set_settings(settings),
             Command::ExportRectified(on) => self.preferences.export_rectified = on,
@@ -394,7 +396,7 @@ impl State {
         picks: impl FnOnce(&mut History<Vec<PickedPoint>>) -> bool,
         limits: impl FnOnce(&mut History<LevelBox>) -> bool,
         settings: impl FnOnce(&mut History<FlightSettings>) -> bool,
-    ) {
+    ) -> Vec<&'static str> {
         let picked = self.open.as_mut().map(|open| &mut open.pointer.picked);
         let undone = picked
             .filter(|picked| picked.is_on)
@@ -404,8 +406,15 @@ impl State {
                 .open
                 .as_mut()
                 .is_some_and(|open| open.undo_clip(limits));
-        if !undone {
-            self.undo_settings(settings);
+        if undone {
+            return Vec::new();
+        }
+        let settings_now = |state: &Self| state.open.as_ref().map(|open| open.settings());
+        let before = settings_now(self);
+        self.undo_settings(settings);
+        match (before, settings_now(self)) {
+            (Some(before), Some(now)) => now.changed_since(&before),
+            _ => Vec::new(),
         }
     }
 
@@ -499,5 +508,13 @@ impl State {
         let shown: String = text.chars().take(COPIED_SHOWN).collect();
         self.say(Severity::Note, &format!("copied: {shown}{more}"));
         self.context.copy_text(text);
+    }
+}
+
+/// "undone: the unit, the ground"; without what, where nobody can say.
+fn with_what(done: &str, changed: &[&str]) -> String {
+    match changed.is_empty() {
+        true => done.to_owned(),
+        false => format!("{done}: {}", changed.join(", ")),
     }
 }

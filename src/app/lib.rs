@@ -415,6 +415,10 @@ fn more_contrast(style: &mut egui::Style) {
     let visuals = &mut style.visuals;
     visuals.warn_fg_color = panels::verdict_color(Verdict::Check, visuals);
     visuals.error_fg_color = panels::verdict_color(Verdict::NoScale, visuals);
+    if !visuals.dark_mode {
+        // egui's light blue is 2.8 : 1 on a light page; this is over 6 : 1.
+        visuals.hyperlink_color = egui::Color32::from_rgb(0, 86, 160);
+    }
     let text = if visuals.dark_mode { 215 } else { 25 };
     visuals.widgets.noninteractive.fg_stroke.color = egui::Color32::from_gray(text);
     visuals.widgets.inactive.fg_stroke.color = egui::Color32::from_gray(text);

@@ -233,7 +233,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 30] = [
     },
     PhotoColumn {
         name: "Interval %",
-        hover: "Half the width of the 95 % interval of what goes to Split-Desktop, of the less certain edge",
+        hover: "How far the farther end of the 95 % interval of what goes to Split-Desktop is, of the less certain edge",
         kind: Percent,
         table: Some("95 % ±"),
         value: |line| Number(line.interval_percent()),

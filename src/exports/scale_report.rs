@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::ReportObject;
 use crate::fault::{Fault, first_names};
 use crate::flight::{Doubt, PhotoReview, Review, ScaleObject};
-use crate::numbers::is_width;
+use crate::numbers::{farther_percent, is_width};
 use crate::scale::{
     EdgeScales, ErrorSource, FittedScale, ImageKind, ScaleEstimate, ScalePair, Uncertainty,
 };
@@ -282,13 +282,16 @@ impl<'a> PhotoLine<'a> {
         }
     }
 
-    /// Half the width of the 95 % interval of what goes to Split-Desktop, of the less certain edge, in
+    /// How far the farther end of the 95 % interval of what goes to Split-Desktop is, of the less certain edge, in
     /// percent; `None` where an edge has none, or one that is rounding.
     pub fn interval_percent(&self) -> Option<f64> {
         let [top, bottom] = self.estimates(self.photo.pair);
-        let half =
-            |estimate: Option<ScaleEstimate>| Some(estimate?.interval?.width_percent() / 2.0);
-        Some(half(top)?.max(half(bottom)?)).filter(|percent| is_width(*percent))
+        let farther = |estimate: Option<ScaleEstimate>| {
+            let ScaleEstimate { value, interval } = estimate?;
+            let interval = interval?;
+            Some(farther_percent(value, interval.low, interval.high))
+        };
+        Some(farther(top)?.max(farther(bottom)?)).filter(|percent| is_width(*percent))
     }
 
     /// Elevation of the ground, where a ray needed it; world units.

@@ -1,5 +1,6 @@
 //! A flight: one review, with everything that its scales depend on. Validated when made.
 
+mod changed;
 mod computing;
 mod date;
 mod decision;
@@ -24,7 +25,7 @@ pub use date::Date;
 pub use decision::{Decision, DecisionKind};
 pub use difference::{Difference, DifferenceReason};
 pub use doubt::Doubt;
-pub use evidence::{ColoursFound, Evidence, LookedUp, MetadataRead, PhotoFileState};
+pub use evidence::{ColoursFound, Evidence, LookedUp, MetadataRead, PhotoFileState, TogetherFound};
 pub use file::{
     CameraEntry, CameraSource, FlightFile, PhotoSource, PosesFlight, ReconstructionFlight,
 };

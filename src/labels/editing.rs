@@ -15,6 +15,20 @@ const LEAST_PIECE: usize = 8;
 /// Half the width of a bridge between two fragments, pixels.
 const BRIDGE: f64 = 1.0;
 
+/// An outline narrower than this in the mean, pixels, is a line.
+const LEAST_WIDTH: f64 = 1.0;
+
+/// The area within an outline over how far apart its corners lie, pixels.
+fn mean_width(corners: &[DVec2]) -> f64 {
+    let next = corners.iter().cycle().skip(1);
+    let twice: f64 = corners.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum();
+    let (low, high) = corners.iter().fold(
+        (DVec2::INFINITY, DVec2::NEG_INFINITY),
+        |(low, high), corner| (low.min(*corner), high.max(*corner)),
+    );
+    twice.abs() / 2.0 / low.distance(high).max(f64::MIN_POSITIVE)
+}
+
 impl Outlines {
     /// Fragments that a stroke crosses from side to side become two or more. The largest piece keeps the number.
     ///
@@ -150,8 +164,15 @@ impl Outlines {
     /// What lies within an outline is no rock, or, with `back`, may be rock again: fines.
     ///
     /// # Errors
-    /// Where no pixel lies within the outline.
+    /// Where no pixel lies within the outline, or it is a mere line, which would part fragments and hide nothing.
     pub fn exclude(&self, corners: &[DVec2], back: bool) -> Result<Change, Fault> {
+        if mean_width(corners) < LEAST_WIDTH {
+            let what = "the line encloses nothing";
+            return Err(Fault::new(
+                what,
+                "draw around what is meant, back to where you began",
+            ));
+        }
         let labels = self.labels();
         let mut painting = Painting::on(labels);
         if back {

@@ -124,6 +124,10 @@ fn excluded_and_back() {
     assert_eq!(is_out(&done), 3 + 12);
     let back = after(&done, done.exclude(&square, true).unwrap());
     assert_eq!(is_out(&back), 3);
+    // A line is nothing to leave out, there and back.
+    let line = places(&[[0.0, 0.0], [5.0, 6.0], [5.0, 6.0], [0.1, 0.0]]);
+    let fault = outlines.exclude(&line, false).unwrap_err();
+    assert!(fault.to_string().contains("encloses nothing"), "{fault}");
     assert_eq!(back.labels().areas()[1], 12);
 }
 

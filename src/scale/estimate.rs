@@ -22,7 +22,7 @@ impl ScaleEstimate {
         }
     }
 
-    /// Half its interval's width, such as "2 %".
+    /// How far the farther end of its interval is, such as "2 %".
     pub fn percent(&self) -> Option<String> {
         let Interval { low, high, .. } = self.interval?;
         interval_percent(self.value, low, high)
@@ -43,9 +43,11 @@ impl ScaleEstimate {
         (low > 0.0 && high >= low).then(|| [off(high), off(low)])
     }
 
-    /// The same as half its width, such as "± 2 %".
+    /// The same by the farther end, such as "± 2 %".
     pub fn size_error(&self) -> Option<String> {
-        let [from, to] = self.size_error_percent()?.map(|percent| percent / 100.0);
+        let [from, to] = self
+            .size_error_percent()?
+            .map(|percent| 1.0 + percent / 100.0);
         Some(format!("± {}", interval_percent(1.0, from, to)?))
     }
 
@@ -97,7 +99,7 @@ mod tests {
         };
         let [less, more] = of(20.0, 16.0, 25.0).size_error_percent().unwrap();
         assert!((less + 20.0).abs() < 1e-12 && (more - 25.0).abs() < 1e-12);
-        assert_eq!(of(20.0, 16.0, 25.0).size_error().as_deref(), Some("± 22 %"));
+        assert_eq!(of(20.0, 16.0, 25.0).size_error().as_deref(), Some("± 25 %"));
         assert_eq!(of(50.0, 49.0, 51.0).size_error().as_deref(), Some("± 2 %"));
         // Whatever unit the scale is in.
         let other = of(50.0, 49.0, 51.0).times(100.0);

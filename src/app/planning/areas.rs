@@ -59,7 +59,10 @@ fn read(
     let crs = || {
         let stated = crs.ok_or_else(|| {
             let what = "nobody says in which coordinate system the flight's places are";
-            Fault::new(what, "set it under Flight")
+            Fault::new(
+                        what,
+                        "open the flight with a cloud or model that states it, georeference it, or write crs = \"EPSG:...\" under [world] in its flight.toml",
+                    )
         });
         stated
             .and_then(Crs::understand)

@@ -37,7 +37,10 @@ const MOST_LITCHI_STOPS: usize = 99;
 /// What is wrong with a mission for DJI that names no drone.
 pub(super) fn no_drone() -> Fault {
     let what = "DJI's files need the drone, and the mission does not say it";
-    Fault::new(what, "name it: --drone NAME")
+    Fault::new(
+        what,
+        "choose it (--drone NAME; in the window, under Camera)",
+    )
 }
 
 impl MissionFormat {

@@ -7,7 +7,7 @@ use super::photo_names::PhotoNames;
 use super::{CheckedInput, ExportRequest};
 use crate::flight::{Verdict, compare_names};
 use crate::markup::escaped;
-use crate::numbers::significant_digits;
+use crate::numbers::{farther_percent, significant_digits};
 use crate::scale::{ErrorSource, Ground, ImageKind, ScaleEstimate, ScalePair};
 use crate::units::{LengthUnit, in_words};
 use crate::{PHOTO_COLUMNS, PhotoColumn, PhotoLine, ScaleReport};
@@ -203,8 +203,8 @@ fn meaning_of_intervals(report: &ScaleReport<'_>) -> String {
         let estimates = line.estimates(line.photo.pair);
         estimates.into_iter().flatten().filter_map(|estimate| {
             let interval = estimate.interval?;
-            let half = (interval.high - interval.low) / 2.0;
-            Some((half / estimate.value, estimate.percent()?))
+            let farther = farther_percent(estimate.value, interval.low, interval.high);
+            Some((farther, estimate.percent()?))
         })
     });
     let Some((_, percent)) = percents.max_by(|(a, _), (b, _)| a.total_cmp(b)) else {

@@ -89,7 +89,7 @@ pub(super) fn labels(view: &View, show: &Show, size: DVec2) -> Vec<Label> {
         ),
         label(
             middle + away,
-            format!("level {level}, up {up}"),
+            format!("level {level} {unit}, up {up} {unit}"),
             Anchor::TopMiddle,
         ),
     ]
@@ -123,7 +123,7 @@ mod tests {
         };
         assert_eq!(told.text, "13.00 m");
         // 3 and 4 give 5.
-        assert_eq!(parts.text, "level 5.000, up 12.00");
+        assert_eq!(parts.text, "level 5.000 m, up 12.00 m");
         assert!(parts.at.distance(DVec2::new(315.0, 228.0)) < 1e-6);
         // Ten pixels a unit: 1.5 and 2 units off the middle, and 8 pixels up.
         assert!(
@@ -137,7 +137,10 @@ mod tests {
             measured: show.measured.iter().rev().copied().collect(),
             ..Show::default()
         };
-        assert_eq!(labels(&view, &down, size)[1].text, "level 5.000, up -12.00");
+        assert_eq!(
+            labels(&view, &down, size)[1].text,
+            "level 5.000 m, up -12.00 m"
+        );
         view.projection = Projection::Perspective { fov_y: 0.8 };
         view.eye = origin + DVec3::Z * 6.0;
         assert_eq!(labels(&view, &show, size), []);

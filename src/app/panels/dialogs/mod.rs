@@ -83,8 +83,12 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             .open(&mut stays)
             .collapsible(false)
             .resizable(false)
-            .pivot(egui::Align2::CENTER_CENTER)
-            .default_pos(context.content_rect().center())
+            // What grows while one types grows downwards: nothing moves away from under the mouse.
+            .pivot(egui::Align2::CENTER_TOP)
+            .default_pos(
+                context.content_rect().center_top()
+                    + egui::vec2(0.0, 0.2 * context.content_rect().height()),
+            )
             .show(context, |ui| {
                 let wide = matches!(asking, Asking::Georeference | Asking::FromPhotos);
                 let width = match asking {
@@ -342,7 +346,11 @@ fn add(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             Dialog::folder("Folder of the flight's photos"),
         ),
     ];
-    if let Some(path) = taken_path(state, ui, Path::new(""), &browse, "Add it", commands) {
+    // What was typed for another flight, or one that is still to be opened, is not meant for this one.
+    let field = ui.push_id(&name, |ui| {
+        taken_path(state, ui, Path::new(""), &browse, "Add it", commands)
+    });
+    if let Some(path) = field.inner {
         commands.push(Command::Add(path));
     }
     if state.from_photos.offered.is_some() {

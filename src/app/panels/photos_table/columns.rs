@@ -3,6 +3,7 @@
 
 use crate::exports::{ColumnKind, PHOTO_COLUMNS, PhotoColumn};
 use crate::panels::rows::text_width;
+use crate::scale::ScalePair;
 
 /// The width of the check box that chooses a photo.
 pub(super) const CHECK: f32 = 24.0;
@@ -19,19 +20,37 @@ pub(super) struct Columns {
     pub(super) all: Vec<&'static PhotoColumn>,
     /// Of each, the widest name or number that a row in sight had.
     seen: Vec<f32>,
+    pair: ScalePair,
     id: egui::Id,
 }
 
+/// Whether a column stands behind the others: the scales of the best line take the place of the corners', where these go to
+/// Split-Desktop.
+fn is_behind(column: &PhotoColumn, pair: ScalePair) -> bool {
+    column.is_behind != (pair == ScalePair::Corners && column.kind == ColumnKind::Scale)
+}
+
 impl Columns {
-    /// Those of the table; numbers of another flight or unit, `of`, have other widths.
-    pub(super) fn of(of: impl std::hash::Hash + std::fmt::Debug, ui: &egui::Ui) -> Self {
+    /// Those of the table, the scales that go to Split-Desktop before the others; numbers of another flight or unit, `of`, have
+    /// other widths.
+    pub(super) fn of(
+        of: impl std::hash::Hash + std::fmt::Debug,
+        pair: ScalePair,
+        ui: &egui::Ui,
+    ) -> Self {
+        let of = (of, pair == ScalePair::Corners);
         let shown = PHOTO_COLUMNS.iter().filter(|column| column.width.is_some());
         let mut all: Vec<&'static PhotoColumn> = shown.collect();
-        all.sort_by_key(|column| column.is_behind);
+        all.sort_by_key(|column| is_behind(column, pair));
         let id = ui.scope_id().with(("widths of numbers", of));
         let seen = ui.data(|data| data.get_temp(id));
         let seen = seen.unwrap_or_else(|| vec![0.0; all.len()]);
-        Self { all, seen, id }
+        Self {
+            all,
+            seen,
+            pair,
+            id,
+        }
     }
 
     /// The width of each, with `room` points for them and `gap` between two.
@@ -56,7 +75,10 @@ impl Columns {
             // As many as are wholly in sight beside a name; the name fills the place up to the next one.
             let (mut left, usual) = (room, widths[name]);
             for (place, column) in self.all.iter().enumerate() {
-                let least = if column.is_behind { usual } else { least_name };
+                let least = match is_behind(column, self.pair) {
+                    true => usual,
+                    false => least_name,
+                };
                 let width = widths[place] + gap;
                 if place == name {
                     continue;

@@ -57,7 +57,11 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
 }
 
 fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    let mut columns = Columns::of((open.number, state.preferences.unit().symbol()), ui);
+    let mut columns = Columns::of(
+        (open.number, state.preferences.unit().symbol()),
+        open.history.now().pair,
+        ui,
+    );
     let widths = columns.widths(ui.available_width(), ui.spacing().item_spacing.x);
     let seen = columns.seen();
     let verdict_in_sight = columns.is_in_sight(ColumnKind::Verdict, &widths, ui);
