@@ -2,8 +2,10 @@
 
 use std::collections::HashMap;
 
-use super::names::{SizeText, SizeUnit};
 use super::raw::RawCurve;
+use super::size_text::SizeText;
+use super::size_unit::SizeUnit;
+use super::unit_above::Above;
 use crate::fault::Fault;
 use crate::fragmentation::{DistributionSet, LabelledDistribution, Labels, SizeDistribution};
 use crate::tables::table::NumberRepairs;
@@ -119,12 +121,18 @@ impl Repairs {
 }
 
 /// How the sizes of a table are to be read.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct SizeReading {
     /// The unit that the name of the column of sizes states.
     pub(super) header: Option<SizeUnit>,
     /// The unit that the user states.
     pub(super) given: Option<LengthUnit>,
+    /// What the lines above the names say of it.
+    pub(super) above: Above,
+    /// What is wrong with a name of sizes that may state a unit which is not known.
+    pub(super) unknown: Option<Fault>,
+    /// The name of the column of percents, where it says that they are percents.
+    pub(super) says_percent: Option<String>,
     /// Whether percents stand in the names of columns and sizes in the cells.
     pub(super) percentiles: bool,
 }
@@ -138,7 +146,7 @@ pub(super) fn finish(
     reading: SizeReading,
     mut repairs: Repairs,
 ) -> Result<(DistributionSet, Vec<String>), Fault> {
-    let (unit, size_of) = unit_of_sizes(&curves, reading, &mut repairs)?;
+    let (unit, size_of) = unit_of_sizes(&curves, &reading, &mut repairs)?;
     for curve in &mut curves {
         if let Some(sieves) = curve.sieves {
             let what = prefix(&curve.labels);
@@ -146,6 +154,9 @@ pub(super) fn finish(
         }
     }
     if are_shares(&curves) {
+        if let Some(name) = &reading.says_percent {
+            refuse_percents_below_1(&curves, name)?;
+        }
         repairs
             .said
             .push("passing is given in shares of 1 and taken times 100".to_owned());
@@ -172,7 +183,7 @@ pub(super) fn finish(
             repairs.one_size.add(curve.line);
             continue;
         }
-        let distribution = distribution(&curve, &size_of, unit, reading, &mut repairs)?;
+        let distribution = distribution(&curve, &size_of, unit, &reading, &mut repairs)?;
         let top = distribution.points().last().map_or(0.0, |point| point[1]);
         let signed = curve.points.iter().any(|point| point.percent_sign);
         if (0.5..=1.0).contains(&top) && !signed {
@@ -188,6 +199,7 @@ pub(super) fn finish(
             distribution,
         });
     }
+    repairs.said.extend(spelt_alike(&set));
     if set.curves.is_empty() {
         let remedy = "give two or more sizes with their percent passing";
         return Err(Fault::at(
@@ -197,6 +209,32 @@ pub(super) fn finish(
         ));
     }
     Ok((set, repairs.warnings()))
+}
+
+/// Which curves' names differ by their spelling alone ("Sieve" and "sieve", trials 1, 1.0 and 01), a sentence each: whether they are one,
+/// only people know.
+fn spelt_alike(set: &DistributionSet) -> Vec<String> {
+    let plain = |name: &str| {
+        let name = name.trim().to_lowercase();
+        let number = name.replace(',', ".").parse::<f64>();
+        number.map_or(name, |number| number.to_string())
+    };
+    let mut known: HashMap<[String; 3], &Labels> = HashMap::new();
+    let mut said = Vec::new();
+    for labels in set.curves.iter().map(|curve| &curve.labels) {
+        let key = [&labels.method, &labels.trial, &labels.photo].map(|name| plain(name));
+        match known.get(&key) {
+            Some(first) => said.push(format!(
+                "{} and {} are two curves, whose names differ by their spelling alone",
+                named(first, "a curve"),
+                named(labels, "another")
+            )),
+            None => {
+                known.insert(key, labels);
+            }
+        }
+    }
+    said
 }
 
 /// Whether a curve's sizes are all the same text, as percentiles of a photo of one stone are.
@@ -233,10 +271,32 @@ fn are_shares(curves: &[RawCurve]) -> bool {
         && points().all(|point| !point.percent_sign)
 }
 
+/// Refuses what may be percents up to 1, as the name of their column says, or shares of 1.
+fn refuse_percents_below_1(curves: &[RawCurve], name: &str) -> Result<(), Fault> {
+    let points = || curves.iter().flat_map(|curve| &curve.points);
+    let top = points().map(|point| point.percent).fold(0.0, f64::max);
+    let last = points().max_by(|a, b| a.percent.total_cmp(&b.percent));
+    let what = format!("column '{name}' says percent, and ends at {top}, as shares of 1 do");
+    let remedy = "write % signs behind percents, or call the column 'passing, share of 1'";
+    Err(Fault::at(last.map_or(1, |point| point.line), what, remedy))
+}
+
+/// The unit that a line above the names states, which is said; mm where none does.
+fn of_lines_above(above: &Above, repairs: &mut Repairs) -> SizeUnit {
+    let Above::Stated(unit, word, line) = above else {
+        return SizeUnit::plain(LengthUnit::Millimetre);
+    };
+    repairs.said.push(format!(
+        "the unit of sizes is that of line {line}: {}",
+        shown(word)
+    ));
+    *unit
+}
+
 /// The unit of the set, and what a size is in it.
 fn unit_of_sizes(
     curves: &[RawCurve],
-    reading: SizeReading,
+    reading: &SizeReading,
     repairs: &mut Repairs,
 ) -> Result<(LengthUnit, impl Fn(&SizeText) -> f64 + use<>), Fault> {
     let points = || curves.iter().flat_map(|curve| &curve.points);
@@ -246,7 +306,7 @@ fn unit_of_sizes(
     let number_of = move |size: &SizeText| match (size.sieve_mm, size.number) {
         (Some(mm), number) if by_name || number.is_none() => {
             let unit = LengthUnit::Millimetre;
-            (mm, Some(SizeUnit { unit, factor: 1.0 }))
+            (mm, Some(SizeUnit::plain(unit)))
         }
         (_, number) => number.unwrap_or((f64::NAN, None)),
     };
@@ -256,11 +316,14 @@ fn unit_of_sizes(
         let (number, unit) = number_of(&point.size);
         unit.is_none() && number != 0.0
     });
-    let stated = reading
-        .header
-        .or(reading.given.map(|unit| SizeUnit { unit, factor: 1.0 }));
+    let stated = reading.header.or(reading.given.map(SizeUnit::plain));
     let of_bare = match (stated, first_with, bare) {
         (Some(stated), ..) => stated,
+        (None, None, _) | (None, Some(_), Some(_))
+            if matches!(reading.above, Above::Stated(..)) =>
+        {
+            of_lines_above(&reading.above, repairs)
+        }
         (None, Some(_), Some(bare)) => {
             let what = "this size has no unit, where others have one";
             let remedy = "give each size its unit, or state one in the name of the column";
@@ -268,13 +331,16 @@ fn unit_of_sizes(
         }
         (None, Some(first), None) => first,
         (None, None, _) => {
+            if let Some(fault) = &reading.unknown {
+                return Err(fault.clone());
+            }
+            if let Above::Unclear(fault) = &reading.above {
+                return Err(fault.clone());
+            }
             repairs.said.push(
                 "no unit is stated: sizes are taken for mm (state it in the name of their column, or by --size-unit)".to_owned(),
             );
-            SizeUnit {
-                unit: LengthUnit::Millimetre,
-                factor: 1.0,
-            }
+            SizeUnit::plain(LengthUnit::Millimetre)
         }
     };
     if let (Some(header), Some(given)) = (reading.header, reading.given)
@@ -285,10 +351,11 @@ fn unit_of_sizes(
             header.unit
         ));
     }
-    if of_bare.factor != 1.0 {
-        repairs
-            .said
-            .push("sizes in micrometres are taken for mm times 0.001".to_owned());
+    if let Some(called) = of_bare.called() {
+        repairs.said.push(format!(
+            "sizes in {called} are taken for {} times {}",
+            of_bare.unit, of_bare.factor
+        ));
     }
     let unit = of_bare.unit;
     let in_unit = move |size: &SizeText| {
@@ -304,7 +371,7 @@ fn distribution(
     curve: &RawCurve,
     size_of: &impl Fn(&SizeText) -> f64,
     unit: LengthUnit,
-    reading: SizeReading,
+    reading: &SizeReading,
     repairs: &mut Repairs,
 ) -> Result<SizeDistribution, Fault> {
     let name = prefix(&curve.labels);

@@ -1,11 +1,11 @@
 //! Which of the layouts a table has, told by the names of its columns.
 
 use super::DistributionColumns;
-use super::names::{
-    PASSING_NAMES, PercentileColumn, RetainedName, Role, SizeText, SizeUnit, is_amount, role,
-    sample_of, weight_of,
-};
+use super::names::{PASSING_NAMES, RetainedName, Role, is_amount, role, sample_of, weight_of};
+use super::percentile_column::{PercentileColumn, PercentsOfSet};
 use super::retained::{is_pan, is_total};
+use super::size_text::SizeText;
+use super::size_unit::SizeUnit;
 use crate::fault::Fault;
 use crate::fragmentation::Weighting;
 use crate::tables::table::{Table, key};
@@ -38,7 +38,11 @@ pub(super) enum Layout {
         names: Option<usize>,
     },
     /// One line a curve, a column each percent.
-    Percentiles { columns: Vec<PercentColumn> },
+    Percentiles {
+        columns: Vec<PercentColumn>,
+        /// Whether they are called by shares of 1.
+        by_shares: bool,
+    },
 }
 
 /// A column of sizes that `percent` pass.
@@ -183,7 +187,7 @@ impl Layout {
             Ok(Self::SizesAsColumns { sizes, unit, .. }) => {
                 unit.is_some() || sizes.iter().filter(|size| with_unit(size)).count() >= 2
             }
-            Ok(Self::Percentiles { columns }) => {
+            Ok(Self::Percentiles { columns, .. }) => {
                 columns.len() >= 3 && !has_all(table, &["x", "y", "z"])
             }
             Err(_) => false,
@@ -440,7 +444,7 @@ impl<'a> Names<'a> {
     fn percentiles_of(&self, set: &str) -> Result<Layout, Fault> {
         let columns = self.percentiles.iter();
         let columns = columns.filter(|(_, column)| column.set == set);
-        let columns: Vec<PercentColumn> = columns
+        let mut columns: Vec<PercentColumn> = columns
             .map(|(column, percentile)| PercentColumn {
                 column: *column,
                 percent: percentile.percent,
@@ -452,7 +456,25 @@ impl<'a> Names<'a> {
             let what = format!("column '{name}' is a single percentile");
             return Err(self.fault(what, "give two or more, called alike"));
         }
-        Ok(Layout::Percentiles { columns })
+        let by_shares = match PercentsOfSet::of(columns.iter().map(|column| column.percent)) {
+            PercentsOfSet::Percents => false,
+            PercentsOfSet::Shares => true,
+            PercentsOfSet::Either => {
+                let name = columns.first().map(|column| self.table.name(column.column));
+                let what = format!(
+                    "columns as '{}' are percentiles of shares of 1 or of percents below 1, which nothing says",
+                    name.unwrap_or_default()
+                );
+                return Err(self.fault(what, "call them by percents: D10, D50"));
+            }
+        };
+        if by_shares {
+            for column in &mut columns {
+                // 0.29 times 100 is 28.999999999999996.
+                column.percent = (column.percent * 1e11).round() / 1e9;
+            }
+        }
+        Ok(Layout::Percentiles { columns, by_shares })
     }
 
     /// The sets of two percentiles or more, without those of logarithms, by their first columns.
@@ -471,6 +493,15 @@ impl<'a> Names<'a> {
         sets.map(|(column, set, _)| (column, set)).collect()
     }
 
+    /// Whether a column is one of a set of percentiles that are called by percents.
+    fn is_of_a_set(&self, column: usize, sets: &[(usize, &str)]) -> bool {
+        self.percentiles.iter().any(|(own, percentile)| {
+            *own == column
+                && percentile.set.starts_with('%')
+                && sets.iter().any(|(_, set)| *set == percentile.set)
+        })
+    }
+
     /// The layout where no column was named.
     fn by_names(&self) -> Result<Layout, Fault> {
         let names = self.table.header().iter().filter(|name| !name.is_empty());
@@ -482,8 +513,10 @@ impl<'a> Names<'a> {
             let remedy = "put a line like 'size_mm,percent_passing' first";
             return Err(self.fault(what, remedy));
         }
-        let passing = self.with(|role| role == Role::Passing);
         let sets = self.percentile_sets();
+        let mut passing = self.with(|role| role == Role::Passing);
+        // "10 % passing (cm)" and its like are sizes.
+        passing.retain(|&column| !self.is_of_a_set(column, &sets));
         let mut retained = self.retained()?;
         retained.retain(|_| passing.is_empty());
         let mut size = self.size(!passing.is_empty() || !retained.is_empty())?;

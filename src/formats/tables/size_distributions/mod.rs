@@ -13,16 +13,18 @@
 //! photo,10 mm,20 mm,40 mm                one line a curve, a column each size
 //! a.jpg,12,35.5,100                      (or "Sieve (mm),10,20,40" over "sieve A,12,35.5,100")
 //!
-//! label,D10,D50,D90                      one line a curve, a column each percent passing: D, P, x
+//! label,D10,D50,D90                      one line a curve, a column each percent passing: D, P, x, F
 //! a.jpg,9,26,38                          or k; columns of one set end alike (D50_old is another
-//!                                        set), and those that end in psi or phi are logarithms
+//!                                        set), and those that end in psi or phi are logarithms;
+//!                                        d(0.1) is of shares, "10 % passing (cm)" is one, too
 //! ```
 //!
 //! - Percent passing is cumulative; percents of classes are refused. In the place of the percent passing may stand what
 //!   stays on the sieves, a laboratory's protocol (`retained`). Where no
 //!   percent of the table is above 1 and the largest is above 0.5, they are shares of 1.
 //! - The unit of sizes stands in the name of their column or below it, or behind each size or in a column of its own; else the
-//!   user states it; else it is mm. Micrometres are read into mm. Sizes may be called by ASTM E11's names of
+//!   user states it; else a line above the names does; else it is mm. What may be a unit and is not known, or not said to be theirs,
+//!   is asked about. Micrometres are read into mm. Sizes may be called by ASTM E11's names of
 //!   sieves ("No. 4", "3/8 in."); where one is, "2 in." is the sieve of 50 mm too.
 //! - Mended, and said: decimal commas; passing up to 100.05 % and falls of up to 0.05 %, which rounding
 //!   explains; lines of a title above the names; a line twice; a size of 0 that nothing passes; the pan under the sieves.
@@ -31,12 +33,16 @@
 mod curves;
 mod layout;
 mod names;
+mod percentile_column;
 mod point_weights;
 mod raw;
 mod read;
 mod retained;
+mod size_text;
+mod size_unit;
 #[cfg(test)]
 mod tests;
+mod unit_above;
 mod units_beside;
 
 use std::path::Path;
@@ -134,7 +140,7 @@ pub fn size_distributions(
 ) -> Result<(DistributionSet, Vec<String>), Fault> {
     let whole = table_of(text);
     let read = match &whole {
-        Ok(table) => read::read(table, columns),
+        Ok(table) => read::read(table, text, columns),
         Err(fault) => Err(fault.clone()),
     };
     // What is wrong with such a table, or where none is below, is said of the whole.
@@ -144,7 +150,7 @@ pub fn size_distributions(
     let Some((table, lines)) = below_titles(text, columns) else {
         return read;
     };
-    let (set, mut said) = read::read(&table, columns)?;
+    let (set, mut said) = read::read(&table, text, columns)?;
     let plural = if lines == 1 { "line" } else { "lines" };
     let titles = format!("{lines} {plural} above the names of the columns are passed over");
     said.insert(0, titles);
@@ -186,6 +192,9 @@ pub fn read_size_distributions(
     path: &Path,
     columns: &DistributionColumns,
 ) -> Result<(DistributionSet, Vec<String>), FileError> {
-    let text = read_bounded(path)?;
-    size_distributions(&text, columns).map_err(|fault| FileError::new(path, fault))
+    let (text, how) = read_bounded(path)?;
+    let (set, mut said) =
+        size_distributions(&text, columns).map_err(|fault| FileError::new(path, fault))?;
+    said.extend(how.map(str::to_owned));
+    Ok((set, said))
 }

@@ -1,45 +1,9 @@
 //! What the name of a column says that it holds.
 
-use crate::fragmentation::{SieveSeries, Weighting};
-use crate::tables::table::{key, split_number};
+use super::size_unit::{SizeUnit, no_length};
+use crate::fragmentation::Weighting;
+use crate::tables::table::key;
 use crate::units::LengthUnit;
-
-/// A unit of sizes: `factor` of `unit` are one of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct SizeUnit {
-    pub(super) unit: LengthUnit,
-    /// 1 but for micrometres, which are 0.001 mm.
-    pub(super) factor: f64,
-}
-
-impl SizeUnit {
-    /// The unit of a word: "mm", "inches", "µm".
-    pub(super) fn of(word: &str) -> Option<Self> {
-        let word = word.trim().trim_end_matches('.').to_lowercase();
-        let unit = match word.as_str() {
-            "mm" | "millimetre" | "millimetres" | "millimeter" | "millimeters" => {
-                LengthUnit::Millimetre
-            }
-            "cm" | "centimetre" | "centimetres" | "centimeter" | "centimeters" => {
-                LengthUnit::Centimetre
-            }
-            "m" | "metre" | "metres" | "meter" | "meters" => LengthUnit::Metre,
-            "in" | "inch" | "inches" | "\"" | "″" => LengthUnit::Inch,
-            "ft" | "foot" | "feet" | "'" | "′" => LengthUnit::Foot,
-            "us-ft" => LengthUnit::UsSurveyFoot,
-            // The micro sign and the Greek letter.
-            "um" | "µm" | "μm" | "micron" | "microns" | "micrometre" | "micrometres"
-            | "micrometer" | "micrometers" => {
-                return Some(Self {
-                    unit: LengthUnit::Millimetre,
-                    factor: 0.001,
-                });
-            }
-            _ => return None,
-        };
-        Some(Self { unit, factor: 1.0 })
-    }
-}
 
 /// Which area or mass a curve stands for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,7 +59,7 @@ impl RetainedName {
         let percent = says_percent(words);
         let mass = says_mass(words);
         let cumulative = words.iter().any(|word| says_cumulative(word));
-        let each = any(&EACH_NAMES);
+        let each = any(EACH_NAMES);
         match (percent, mass, cumulative) {
             (true, _, true) => Self::CumulativePercent,
             (true, _, false) if each => Self::EachPercent,
@@ -108,26 +72,49 @@ impl RetainedName {
     }
 }
 
-/// What masses are called; here and below also in German, French and Spanish.
-const MASS_NAMES: [&str; 10] = [
-    "mass", "masses", "weight", "weights", "wt", "masse", "gewicht", "poids", "masa", "peso",
+/// What masses are called; here and below also in German, French, Spanish, Italian, Portuguese, Polish, Swedish, Turkish and Russian.
+const MASS_NAMES: &[&str] = &[
+    "mass",
+    "masses",
+    "weight",
+    "weights",
+    "wt",
+    "masse",
+    "gewicht",
+    "poids",
+    "masa",
+    "peso",
+    "massa",
+    "vikt",
+    "kütle",
+    "масса",
 ];
 
 /// What percents are called.
-const PERCENT_NAMES: [&str; 4] = ["percent", "pct", "percentage", "prozent"];
+const PERCENT_NAMES: &[&str] = &[
+    "percent",
+    "pct",
+    "percentage",
+    "prozent",
+    "procent",
+    "yüzde",
+    "процент",
+];
 
 /// What says that each sieve's share is meant, not the sum down to it.
-const EACH_NAMES: [&str; 6] = [
+const EACH_NAMES: &[&str] = &[
     "each",
     "individual",
     "incremental",
     "differential",
     "partial",
     "parcial",
+    "parziale",
+    "simples",
 ];
 
 /// What is within the name of a size of sieves or fragments.
-const SIZE_NAMES: [&str; 16] = [
+const SIZE_NAMES: &[&str] = &[
     "size",
     "opening",
     "aperture",
@@ -144,10 +131,39 @@ const SIZE_NAMES: [&str; 16] = [
     "tamiz",
     "tamaño",
     "malla",
+    "durchmesser",
+    "diamètre",
+    "diámetro",
+    "diametro",
+    "diâmetro",
+    "setaccio",
+    "vaglio",
+    "peneira",
+    "tamanho",
+    "średnica",
+    "rozmiar",
+    "maskvidd",
+    "kornstorlek",
+    "açıklığı",
+    "çapı",
+    "размер",
+    "диаметр",
+];
+
+/// Words that are names of sieves and sizes by themselves, and parts of other words.
+const SIZE_WORDS: &[&str] = &[
+    "maglia",
+    "sito",
+    "oczko",
+    "sikt",
+    "elek",
+    "çap",
+    "сито",
+    "ячейка",
 ];
 
 /// What is within the name of what passes.
-pub(super) const PASSING_NAMES: [&str; 7] = [
+pub(super) const PASSING_NAMES: &[&str] = &[
     "passing",
     "passed",
     "finer",
@@ -155,10 +171,19 @@ pub(super) const PASSING_NAMES: [&str; 7] = [
     "durchgang",
     "passant",
     "pasante",
+    "passando",
+    "przechodz",
+    "przesiew",
+    "passerande",
+    "passerat",
+    "geçen",
+    "проход",
+    "прошло",
+    "просев",
 ];
 
 /// What is within the name of what stays on sieves.
-const RETAINED_NAMES: [&str; 8] = [
+const RETAINED_NAMES: &[&str] = &[
     "retained",
     "oversize",
     "coarser",
@@ -167,11 +192,17 @@ const RETAINED_NAMES: [&str; 8] = [
     "rueckstand",
     "refus",
     "retenido",
+    "retido",
+    "trattenut",
+    "pozostał",
+    "kvarstannat",
+    "kalan",
+    "остаток",
 ];
 
 /// Whether a word says that percents or masses are cumulative.
 fn says_cumulative(word: &str) -> bool {
-    ["cum", "kum", "acum"]
+    ["cum", "kum", "acum", "накоп"]
         .iter()
         .any(|start| word.starts_with(start))
 }
@@ -192,7 +223,7 @@ fn says_percent(words: &[String]) -> bool {
 
 /// The words of a name in small letters: "PercentPassing", "percent_passing" and "% passing" are the
 /// same; a quotation mark is inches.
-fn words(name: &str) -> Vec<String> {
+pub(super) fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut after_small = false;
     for c in name.chars() {
@@ -220,7 +251,7 @@ fn words(name: &str) -> Vec<String> {
 }
 
 /// Takes the unit that a name ends with off its words.
-fn take_unit(words: &mut Vec<String>) -> Option<SizeUnit> {
+pub(super) fn take_unit(words: &mut Vec<String>) -> Option<SizeUnit> {
     let mut unit = SizeUnit::of(words.last()?)?;
     words.pop();
     if unit.unit == LengthUnit::Foot && words.last().is_some_and(|word| word == "us") {
@@ -260,6 +291,12 @@ fn of_size_role(words: &[String], unit: Option<SizeUnit>) -> Role {
         "tamis",
         "tamiz",
         "malla",
+        "durchmesser",
+        "setaccio",
+        "vaglio",
+        "peneira",
+        "maskvidd",
+        "kornstorlek",
         "sievesize",
         "screensize",
         "grainsize",
@@ -324,6 +361,9 @@ pub(super) fn size_trouble(name: &str) -> Option<&'static str> {
     if words.iter().any(is_logarithm) {
         return Some("may be logarithms of sizes");
     }
+    if let Some(what) = no_length(&words) {
+        return Some(what);
+    }
     take_unit(&mut words)?;
     let is_number = |word: &String| word.trim_start_matches('x').parse::<f64>().is_ok();
     if words.iter().any(is_number) {
@@ -346,7 +386,7 @@ pub(super) fn sample_of(name: &str) -> String {
         let of_sieves = ["on", "sieve"];
         word.is_empty()
             || says_cumulative(&word)
-            || [&RETAINED_NAMES[..], &PERCENT_NAMES, &EACH_NAMES, &of_sieves]
+            || [RETAINED_NAMES, PERCENT_NAMES, EACH_NAMES, &of_sieves]
                 .iter()
                 .any(|list| list.contains(&word.as_str()))
             || says_mass(std::slice::from_ref(&word))
@@ -357,6 +397,54 @@ pub(super) fn sample_of(name: &str) -> String {
         .join(" ")
         .trim_matches(['-', ':', '/', ' '])
         .to_owned()
+}
+
+/// Whether a name says that it counts fragments, and does not weigh them.
+pub(super) fn counts_fragments(name: &str) -> bool {
+    let counted = [
+        "number", "numbers", "count", "anzahl", "número", "nombre", "numero",
+    ];
+    words(name)
+        .iter()
+        .any(|word| counted.contains(&word.as_str()))
+}
+
+/// Whether a name says that it is of percents.
+pub(super) fn names_percent(name: &str) -> bool {
+    says_percent(&words(name))
+}
+
+/// Whether a word speaks of sizes.
+pub(super) fn says_size(word: &str) -> bool {
+    let word = word.to_lowercase();
+    let more = [
+        "größe",
+        "groesse",
+        "taille",
+        "dimensioni",
+        "dimensione",
+        "sieve",
+        "siebe",
+    ];
+    (SIZE_NAMES.iter().chain(&more)).any(|part| word.contains(part))
+        || SIZE_WORDS.contains(&word.as_str())
+}
+
+/// Whether a name says that something stays on sieves.
+pub(super) fn says_retained(name: &str) -> bool {
+    let joined = words(name).concat();
+    RETAINED_NAMES.iter().any(|part| joined.contains(part))
+}
+
+/// What the name of a set of percentiles says beside percents and passing.
+pub(super) fn without_passing(name: &str) -> String {
+    let is_known = |word: &String| {
+        says_percent(std::slice::from_ref(word))
+            || says_cumulative(word)
+            || PASSING_NAMES.iter().any(|part| word.contains(part))
+    };
+    let left = words(name).into_iter().filter(|word| !is_known(word));
+    left.collect::<Vec<_>>().join(" ")
 }
 
 /// Whether a column among curves is a mass, and no percent of it.
@@ -370,7 +458,7 @@ pub(super) fn is_amount(name: &str) -> bool {
     let ends_as_mass = words
         .last()
         .is_some_and(|word| is(&["g", "kg", "lb", "lbs"], word));
-    let is_mass = words.iter().any(|word| is(&MASS_NAMES, word));
+    let is_mass = words.iter().any(|word| is(MASS_NAMES, word));
     !is_share && (ends_as_mass || (is_mass && words.len() <= 2))
 }
 
@@ -411,11 +499,11 @@ pub(super) fn role(name: &str) -> Role {
     if statistics.contains(&joined.as_str()) {
         return Role::Statistic;
     }
-    let of_size = within(&SIZE_NAMES) && !within(&["undersize", "oversize"]);
+    let of_size = (within(SIZE_NAMES) || any(SIZE_WORDS)) && !within(&["undersize", "oversize"]);
     if of_size && unit.is_some() {
         return of_size_role(&words, unit);
     }
-    if within(&RETAINED_NAMES) {
+    if within(RETAINED_NAMES) {
         return Role::Retained(RetainedName::of(&words));
     }
     let single = [
@@ -445,7 +533,7 @@ pub(super) fn role(name: &str) -> Role {
         "percentcumulative",
         "percentcum",
     ];
-    if within(&PASSING_NAMES) || any(&["pass", "pasa"]) || cumulative.contains(&joined.as_str()) {
+    if within(PASSING_NAMES) || any(&["pass", "pasa"]) || cumulative.contains(&joined.as_str()) {
         return match !percent && says_mass(&words) {
             true => Role::PassingMass,
             false => Role::Passing,
@@ -476,9 +564,9 @@ pub(super) fn role(name: &str) -> Role {
     ];
     match joined.as_str() {
         "sieve" | "sieves" | "screen" | "screens" | "x" | "d" | "mesh" | "sievemesh" | "usmesh"
-        | "tylermesh" | "sieveno" | "sievenumber" | "screenno" | "screennumber" => {
-            Role::PerhapsSize(unit)
-        }
+        | "tylermesh" | "meshus" | "meshastm" | "astmmesh" | "ussieve" | "ussieveno"
+        | "ussievenumber" | "astmsieve" | "astmsieveno" | "sieveno" | "sievenumber"
+        | "screenno" | "screennumber" => Role::PerhapsSize(unit),
         "method" | "methods" | "technique" | "source" => Role::Method,
         "trial" | "trials" | "trialnumber" | "trialno" | "run" | "repetition" | "replicate"
         | "repeat" | "test" => Role::Trial,
@@ -499,95 +587,10 @@ pub(super) fn holds_sieve_numbers(name: &str) -> bool {
             .any(|word| numbers.contains(&word.as_str()))
 }
 
-/// A column of sizes that a percent passes: "D50", "P80 (mm)", "x50".
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct PercentileColumn {
-    /// 0 to 100, neither included at 0.
-    pub(super) percent: f64,
-    pub(super) unit: Option<SizeUnit>,
-    /// What the columns of one set have in common: the letter and what follows the number.
-    pub(super) set: String,
-}
-
-impl PercentileColumn {
-    pub(super) fn of(name: &str) -> Option<Self> {
-        let name = name.trim().to_lowercase();
-        let letter = name.chars().next().filter(|c| "dpxk".contains(*c))?;
-        let rest = name.get(1..)?.trim_start_matches([' ', '_', '(']);
-        let digits = rest.find(|c: char| !c.is_ascii_digit() && c != '.');
-        let (number, suffix) = rest.split_at_checked(digits.unwrap_or(rest.len()))?;
-        let percent: f64 = number.parse().ok()?;
-        if !(percent > 0.0 && percent <= 100.0) {
-            return None;
-        }
-        let mut words = words(suffix);
-        let unit = take_unit(&mut words);
-        Some(Self {
-            percent,
-            unit,
-            set: format!("{letter} {}", words.join(" ")),
-        })
-    }
-
-    /// Whether its sizes are logarithms, on geologists' psi or phi scale.
-    pub(super) fn is_logarithm(&self) -> bool {
-        self.set
-            .split(' ')
-            .any(|word| matches!(word, "psi" | "phi"))
-    }
-}
-
-/// A size as the name of a column or as a cell: "10 mm", "0.5", "No. 4".
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct SizeText {
-    /// The number with the unit behind it.
-    pub(super) number: Option<(f64, Option<SizeUnit>)>,
-    /// The opening, mm, of the sieve of ASTM E11 that is called so.
-    pub(super) sieve_mm: Option<f64>,
-}
-
-impl SizeText {
-    /// The size that the name of a column is; its decimal sign may be a comma.
-    pub(super) fn of_name(name: &str) -> Option<Self> {
-        let (number, rest) = split_number(name.trim());
-        let unit = SizeUnit::of(rest);
-        let number = number.replace(',', ".").parse::<f64>().ok();
-        let number = number.filter(|n| n.is_finite() && (unit.is_some() || rest.trim().is_empty()));
-        let sieve_mm = sieve_mm(name);
-        let found = number.is_some() || sieve_mm.is_some();
-        found.then_some(Self {
-            number: number.map(|number| (number, unit)),
-            sieve_mm,
-        })
-    }
-}
-
-/// The opening of the sieve of ASTM E11 with that designation: "No. 4", "#4", "3/8 in.", "3/8\"". One that is called by
-/// a fraction is of inches, whatever else the table is of.
-pub(super) fn sieve_mm(name: &str) -> Option<f64> {
-    let in_inches = || name.contains('/').then(|| format!("{name} in"));
-    named_sieve_mm(name).or_else(|| named_sieve_mm(&in_inches()?))
-}
-
-/// As [`sieve_mm`], with the inches said.
-fn named_sieve_mm(name: &str) -> Option<f64> {
-    let squeezed = |text: &str| -> String {
-        let text = text.to_lowercase().replace('#', "no");
-        let text = text.replace(['"', '″'], "in").replace("inch", "in");
-        text.chars()
-            .filter(|c| c.is_alphanumeric() || *c == '/')
-            .collect()
-    };
-    let name = name.trim();
-    let is_named =
-        name.starts_with(['N', 'n', '#']) || name.to_lowercase().contains(['i', '"', '″']);
-    if !is_named {
-        return None;
-    }
-    let wanted = squeezed(name);
-    let sieves = SieveSeries::AstmE11.sieves();
-    let sieve = sieves
-        .iter()
-        .find(|sieve| squeezed(sieve.designation) == wanted);
-    sieve.map(|sieve| sieve.opening_mm)
+/// Whether such a column's numbers are those of ASTM E11, the sieves of the United States. (A Tyler mesh of the same number is another
+/// opening: mesh 10 is 1.70 mm, No. 10 is 2.00 mm.)
+pub(super) fn holds_astm_numbers(name: &str) -> bool {
+    let words = words(name);
+    let any = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()));
+    any(&["us", "uss", "astm", "e11"]) && !any(&["tyler"])
 }

@@ -1,6 +1,7 @@
 //! Curves as a table gives them.
 
-use super::names::{RetainedName, SizeText};
+use super::names::RetainedName;
+use super::size_text::SizeText;
 use crate::fragmentation::Labels;
 
 /// A point as the table gives it.

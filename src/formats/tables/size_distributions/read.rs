@@ -6,19 +6,24 @@ use super::DistributionColumns;
 use super::curves::{Repairs, SizeReading, finish};
 use super::layout::{LabelColumns, Layout, PercentColumn};
 use super::names::{
-    Role, SizeText, SizeUnit, holds_sieve_numbers, is_amount, role, sample_of, sieve_mm,
-    size_trouble, weight_factor,
+    Role, counts_fragments, holds_astm_numbers, holds_sieve_numbers, is_amount, names_percent,
+    role, sample_of, size_trouble, weight_factor, words,
 };
 use super::raw::{OnSieves, RawCurve, RawPoint};
 use super::retained::{is_pan, is_result, is_total, is_washed};
+use super::size_text::{SizeText, fraction_of_inches, sieve_mm};
+use super::size_unit::{SizeUnit, no_length, unknown_unit};
+use super::unit_above::Above;
 use crate::fault::Fault;
 use crate::fragmentation::{DistributionSet, Labels};
 use crate::tables::table::{Row, Table};
 use crate::text::fields::shown;
+use crate::units::LengthUnit;
 
-/// Reads the curves of a table.
+/// Reads the curves of a table, which is that of a text.
 pub(super) fn read(
     table: &Table,
+    text: &str,
     columns: &DistributionColumns,
 ) -> Result<(DistributionSet, Vec<String>), Fault> {
     let mut reader = Reader {
@@ -27,20 +32,19 @@ pub(super) fn read(
         holds_sieve_numbers: (table.header().iter())
             .map(|name| holds_sieve_numbers(name))
             .collect(),
+        holds_astm_numbers: (table.header().iter())
+            .map(|name| holds_sieve_numbers(name) && holds_astm_numbers(name))
+            .collect(),
         repairs: Repairs::default(),
     };
     let layout = Layout::of(table, columns)?;
-    if let Layout::Long { size, .. } | Layout::Wide { size, .. } | Layout::Retained { size, .. } =
-        layout
-        && let Some(what) = size_trouble(&table.name(size))
-    {
-        let what = format!("column '{}' {what}", table.name(size));
-        let remedy = "give sizes in one unit, and name it alone: 'size (mm)'";
-        return Err(Fault::at(table.header_line(), what, remedy));
-    }
+    refuse_names_of_sizes(table, &layout)?;
     let mut reading = SizeReading {
         header: None,
         given: columns.unit,
+        above: Above::of(text, table.header_line()),
+        unknown: unknown(table, &layout),
+        says_percent: None,
         percentiles: false,
     };
     let curves = match layout {
@@ -50,6 +54,14 @@ pub(super) fn read(
             passing,
         } => {
             reading.header = unit;
+            let name = table.name(passing);
+            if counts_fragments(&name) {
+                let what = format!(
+                    "column '{name}' is of numbers of fragments: a sieve and every percent here is of mass, which lies at coarser sizes"
+                );
+                reader.repairs.said.push(what);
+            }
+            reading.says_percent = names_percent(&name).then_some(name);
             reader.long(size, &[passing], None)?
         }
         Layout::Retained {
@@ -81,7 +93,12 @@ pub(super) fn read(
             reading.header = unit;
             reader.sizes_as_columns(&sizes, names)?
         }
-        Layout::Percentiles { columns } => {
+        Layout::Percentiles { columns, by_shares } => {
+            if by_shares {
+                let said =
+                    "percentiles are called by shares of 1: of 0.5 it is the size that 50 % pass";
+                reader.repairs.said.push(said.to_owned());
+            }
             // Each column has its own; one that all have is the table's.
             let first = columns.first().and_then(|column| column.unit);
             reading.header = first.filter(|_| columns.iter().all(|column| column.unit == first));
@@ -94,6 +111,50 @@ pub(super) fn read(
         return Err(Fault::at(table.header_line(), "it has no points", remedy));
     }
     finish(curves, reading, reader.repairs)
+}
+
+/// The columns that hold sizes; of sizes in the names of columns that which may state their unit.
+fn columns_of_sizes(layout: &Layout) -> Vec<usize> {
+    match layout {
+        Layout::Long { size, .. } | Layout::Wide { size, .. } | Layout::Retained { size, .. } => {
+            vec![*size]
+        }
+        Layout::SizesAsColumns { names, .. } => names.iter().copied().collect(),
+        Layout::Percentiles { columns, .. } => columns.iter().map(|of| of.column).collect(),
+    }
+}
+
+/// Refuses columns whose names say that they hold no sizes, or sizes of two units.
+fn refuse_names_of_sizes(table: &Table, layout: &Layout) -> Result<(), Fault> {
+    for column in columns_of_sizes(layout) {
+        let name = table.name(column);
+        let trouble = match layout {
+            // Their numbers are percents.
+            Layout::Percentiles { .. } | Layout::SizesAsColumns { .. } => no_length(&words(&name)),
+            _ => size_trouble(&name),
+        };
+        if let Some(what) = trouble {
+            let what = format!("column '{name}' {what}");
+            let remedy = "give sizes in one unit, and name it alone: 'size (mm)'";
+            return Err(Fault::at(table.header_line(), what, remedy));
+        }
+    }
+    Ok(())
+}
+
+/// The fault of a name of sizes whose unit, perhaps, is not known.
+fn unknown(table: &Table, layout: &Layout) -> Option<Fault> {
+    let of_column = |column: usize| {
+        let name = table.name(column);
+        let unit = unknown_unit(&name)?;
+        let what = format!(
+            "column '{name}': '{}' is no known unit of sizes",
+            shown(&unit)
+        );
+        let remedy = "state the unit of sizes (--size-unit), write it as mm, cm, m, in or ft, or name another column (--size)";
+        Some(Fault::at(table.header_line(), what, remedy))
+    };
+    columns_of_sizes(layout).into_iter().find_map(of_column)
 }
 
 /// How near to 100 percents of classes add up.
@@ -153,6 +214,8 @@ struct Reader<'a> {
     columns: &'a DistributionColumns,
     /// Of each column.
     holds_sieve_numbers: Vec<bool>,
+    /// Of each column, those whose numbers say which series they are of.
+    holds_astm_numbers: Vec<bool>,
     repairs: Repairs,
 }
 
@@ -180,7 +243,16 @@ impl Reader<'_> {
                 "fill it in, or leave the line out",
             ));
         }
-        let sieve_mm = sieve_mm(cell);
+        let sieve_mm = match self.holds_astm_numbers.get(column) {
+            Some(true) if cell.starts_with(|c: char| c.is_ascii_digit()) => {
+                sieve_mm(&format!("No. {cell}"))
+            }
+            _ => sieve_mm(cell),
+        };
+        if let (None, Some(inches)) = (sieve_mm, fraction_of_inches(cell)) {
+            let number = Some((inches, Some(SizeUnit::plain(LengthUnit::Inch))));
+            return Ok(Some(SizeText { number, sieve_mm }));
+        }
         let number = self
             .table
             .number_and_rest(row, column, &mut self.repairs.numbers);

@@ -10,8 +10,9 @@
 //! - "% retained" that says neither is of each sieve where all and the pan are 100 %, and cumulative where the pan's is 100 %, or
 //!   where it never falls towards finer sieves and all are more than 100 %. Else it is refused.
 
-use super::names::{RetainedName, SizeText};
+use super::names::RetainedName;
 use super::raw::{OnSieves, RawCurve, RawPoint};
+use super::size_text::SizeText;
 use crate::fault::Fault;
 
 /// How far a sum of percents may be off 100: each is rounded to a tenth, and there are ten sieves.
@@ -27,9 +28,25 @@ const MUCH_LOST: f64 = 0.05;
 pub(super) fn is_pan(cell: &str) -> bool {
     let small = cell.to_lowercase();
     let pans = [
-        "pan", "receiver", "bottom", "tray", "<", "passing",
+        "pan",
+        "receiver",
+        "bottom",
+        "tray",
+        "<",
+        "passing",
         "finer", // German, French, Spanish
-        "boden", "schale", "fond", "fondo", "ciego",
+        "boden",
+        "schale",
+        "fond",
+        "fondo",
+        "ciego", // Portuguese, Polish, Swedish, Turkish, Russian
+        "fundo",
+        "prato",
+        "dno",
+        "botten",
+        "tava",
+        "поддон",
+        "дно",
     ];
     pans.iter().any(|pan| small.starts_with(pan))
 }
@@ -37,9 +54,20 @@ pub(super) fn is_pan(cell: &str) -> bool {
 /// Whether a cell of sizes is in front of the sum of all.
 pub(super) fn is_total(cell: &str) -> bool {
     let small = cell.to_lowercase();
-    ["total", "sum", "σ", "somme", "gesamt"]
-        .iter()
-        .any(|total| small.starts_with(total))
+    [
+        "total",
+        "sum",
+        "σ",
+        "somme",
+        "gesamt",
+        "totale",
+        "razem",
+        "toplam",
+        "итого",
+        "всего",
+    ]
+    .iter()
+    .any(|total| small.starts_with(total))
 }
 
 /// Whether a cell of sizes is the name of a result below the sizes: "F10", "P80", "Topsize (99.95 %)".

@@ -6,7 +6,9 @@
 //! 20,110,35                     2,in,80
 //! ```
 
-use super::names::{PercentileColumn, Role, SizeUnit, is_unit_of_amounts, role};
+use super::names::{Role, is_unit_of_amounts, role};
+use super::percentile_column::PercentileColumn;
+use super::size_unit::SizeUnit;
 use crate::tables::table::{Table, key};
 
 /// The table with its units where the layouts look for them: at the end of the names, or behind the sizes.

@@ -2,6 +2,7 @@
 //!
 //! - The separator is a tab, a semicolon or a comma: the first of these that both the header and the
 //!   line behind it hold. Runs of blanks only where there is none. Fields may be quoted.
+//! - The text is UTF-8, UTF-16, or Windows-1252 where it can be neither.
 //! - A byte order mark, empty lines and lines that begin with # are passed over (but not "#4": a digit
 //!   right behind it makes it a sieve's name).
 //! - A line may end early: what is missing is empty. What stands beyond the header's columns is a
@@ -9,15 +10,17 @@
 //! - Numbers may have a decimal comma where the table shows that it is one and not a thousands
 //!   separator ([`Table::number`]).
 
+mod encoding;
 mod records;
 
 use std::path::Path;
 
 use csv::StringRecord;
 
+use self::encoding::decoded;
 use self::records::{blank_records, separated_records, separator, without_comments};
 use crate::fault::Fault;
-use crate::files::{FileError, open_file, text_from_bytes};
+use crate::files::{FileError, open_file};
 use crate::text::fields::shown;
 
 /// Larger files are no tables that people made or looked at.
@@ -169,9 +172,9 @@ impl Table {
     /// Reads a table from a file.
     ///
     /// # Errors
-    /// As [`Table::read`], and where the file cannot be read or is no UTF-8 text.
+    /// As [`Table::read`], and where the file cannot be read or is no text.
     pub fn read_file(path: &Path) -> Result<Self, FileError> {
-        let text = read_bounded(path)?;
+        let (text, _) = read_bounded(path)?;
         Self::read(&text).map_err(|fault| FileError::new(path, fault))
     }
 
@@ -380,11 +383,11 @@ pub(crate) fn key(name: &str) -> String {
     letters.flat_map(char::to_lowercase).collect()
 }
 
-/// The whole text of a table's file, which is of a size that people measure.
+/// The whole text of a table's file, which is of a size that people measure, and what is said of how it was read.
 ///
 /// # Errors
-/// Where it cannot be read, is too large, or is no UTF-8 text.
-pub(crate) fn read_bounded(path: &Path) -> Result<String, FileError> {
+/// Where it cannot be read, is too large, or is no text.
+pub(crate) fn read_bounded(path: &Path) -> Result<(String, Option<&'static str>), FileError> {
     use std::io::Read;
     let at = |fault| FileError::new(path, fault);
     let mut bytes = Vec::new();
@@ -402,7 +405,7 @@ pub(crate) fn read_bounded(path: &Path) -> Result<String, FileError> {
     if bytes.len() > LARGEST {
         return Err(at(too_large()));
     }
-    text_from_bytes(&bytes).map(str::to_owned).map_err(at)
+    decoded(&bytes).map_err(at)
 }
 
 fn too_large() -> Fault {

@@ -2,6 +2,7 @@
 
 mod faults;
 mod protocols;
+mod units;
 
 use proptest::prelude::*;
 

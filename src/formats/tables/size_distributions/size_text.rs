@@ -1,0 +1,127 @@
+//! A size as people write it: a number with or without its unit, a fraction of inches, the name of a sieve.
+
+use super::size_unit::SizeUnit;
+use crate::fragmentation::SieveSeries;
+use crate::tables::table::split_number;
+use crate::units::LengthUnit;
+
+/// A size as the name of a column or as a cell: "10 mm", "0.5", "No. 4".
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SizeText {
+    /// The number with the unit behind it.
+    pub(super) number: Option<(f64, Option<SizeUnit>)>,
+    /// The opening, mm, of the sieve of ASTM E11 that is called so.
+    pub(super) sieve_mm: Option<f64>,
+}
+
+impl SizeText {
+    /// The size that the name of a column is; its decimal sign may be a comma.
+    pub(super) fn of_name(name: &str) -> Option<Self> {
+        let (number, rest) = split_number(name.trim());
+        let unit = SizeUnit::of(rest);
+        let number = number.replace(',', ".").parse::<f64>().ok();
+        let number = number.filter(|n| n.is_finite() && (unit.is_some() || rest.trim().is_empty()));
+        let sieve_mm = sieve_mm(name);
+        let found = number.is_some() || sieve_mm.is_some();
+        found.then_some(Self {
+            number: number.map(|number| (number, unit)),
+            sieve_mm,
+        })
+    }
+}
+
+/// Fractions that are one character.
+const FRACTIONS: [(char, &str); 7] = [
+    ('½', "1/2"),
+    ('¼', "1/4"),
+    ('¾', "3/4"),
+    ('⅛', "1/8"),
+    ('⅜', "3/8"),
+    ('⅝', "5/8"),
+    ('⅞', "7/8"),
+];
+
+/// A size whose fraction is one character as two numbers: "1½" is "1 1/2". Others as they are.
+fn spelt_out(cell: &str) -> String {
+    let spelt = FRACTIONS.iter().fold(cell.to_owned(), |text, (one, two)| {
+        text.replace(*one, &format!(" {two}"))
+    });
+    spelt.trim().to_owned()
+}
+
+/// Inches with a fraction, as no sieve of ASTM E11 may be called: "15 3/4", "3-5/8 in.", "1½". Only halves, quarters and so on down to
+/// sixty-fourths are fractions of inches.
+pub(super) fn fraction_of_inches(cell: &str) -> Option<f64> {
+    let text = spelt_out(cell);
+    let end = text.find(|c: char| !c.is_ascii_digit() && !" -/".contains(c));
+    let (number, unit) = text.split_at_checked(end.unwrap_or(text.len()))?;
+    let inch = SizeUnit::plain(LengthUnit::Inch);
+    if !unit.is_empty() && SizeUnit::of(unit) != Some(inch) {
+        return None;
+    }
+    let (rest, below) = number.trim().split_once('/')?;
+    let (whole, above) = match rest.trim().rsplit_once([' ', '-']) {
+        Some((whole, above)) => (whole.trim().parse::<u32>().ok()?, above),
+        None => (0, rest.trim()),
+    };
+    let (above, below) = (
+        above.parse::<u32>().ok()?,
+        below.trim().parse::<u32>().ok()?,
+    );
+    let is_of_inches =
+        below.is_power_of_two() && (2..=64).contains(&below) && (1..below).contains(&above);
+    is_of_inches.then(|| f64::from(whole) + f64::from(above) / f64::from(below))
+}
+
+/// The opening of the sieve of ASTM E11 with that designation: "No. 4", "#4", "3/8 in.", "3/8\"". One that is called by
+/// a fraction is of inches, whatever else the table is of.
+pub(super) fn sieve_mm(name: &str) -> Option<f64> {
+    let name = &spelt_out(name);
+    let in_inches = || name.contains('/').then(|| format!("{name} in"));
+    named_sieve_mm(name).or_else(|| named_sieve_mm(&in_inches()?))
+}
+
+/// As [`sieve_mm`], with the inches said.
+fn named_sieve_mm(name: &str) -> Option<f64> {
+    let squeezed = |text: &str| -> String {
+        let text = text.to_lowercase().replace('#', "no");
+        let text = text.replace(['"', '″'], "in").replace("inch", "in");
+        text.chars()
+            .filter(|c| c.is_alphanumeric() || *c == '/')
+            .collect()
+    };
+    let name = name.trim();
+    let is_named =
+        name.starts_with(['N', 'n', '#']) || name.to_lowercase().contains(['i', '"', '″']);
+    if !is_named {
+        return None;
+    }
+    let wanted = squeezed(name);
+    let sieves = SieveSeries::AstmE11.sieves();
+    let sieve = sieves
+        .iter()
+        .find(|sieve| squeezed(sieve.designation) == wanted);
+    sieve.map(|sieve| sieve.opening_mm)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fractions() {
+        for (cell, wanted) in [
+            ("15 3/4", Some(15.75)),
+            ("5-1/2", Some(5.5)),
+            ("1½", Some(1.5)),
+            ("¾ in.", Some(0.75)),
+            ("19 5/16\"", Some(19.3125)),
+            ("3/7", None),
+            ("1/2 mm", None),
+            ("15", None),
+            ("3/2", None),
+        ] {
+            assert_eq!(fraction_of_inches(cell), wanted, "{cell}");
+        }
+    }
+}

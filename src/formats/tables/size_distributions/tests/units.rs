@@ -1,0 +1,262 @@
+//! Which unit sizes are in, wherever and in whatever language it is stated; and what is asked about.
+
+use super::*;
+
+/// The P50, mm, of the Swebrec curve of a finder's files: 120 mm. Its points are written in the unit of each.
+fn p50_mm(text: &str) -> f64 {
+    let (set, _) = read(text);
+    let size = set.curves[0].distribution.size_at(50.0).unwrap();
+    size * set.unit.in_units_of(LengthUnit::Millimetre)
+}
+
+/// Half passes 120 mm: [size in mm, percent].
+const POINTS: [[f64; 2]; 4] = [[63.0, 30.6], [120.0, 50.0], [250.0, 83.0], [500.0, 100.0]];
+
+fn table(header: &str, mm_of_one: f64) -> String {
+    let points = POINTS.map(|[size, percent]| format!("{:.9};{percent}\n", size / mm_of_one));
+    format!("{header}\n{}", points.concat())
+}
+
+#[test]
+fn units_in_the_languages_of_laboratories() {
+    for (header, mm) in [
+        ("Siebweite (Zoll);Durchgang", 25.4),
+        ("Siebweite [dm];Durchgang [%]", 100.0),
+        ("Korngröße (Mikrometer);Durchgang", 0.001),
+        ("Korngröße (Mikron);Durchgang", 0.001),
+        ("Siebweite (Meter);Durchgang", 1000.0),
+        ("Tamaño (pulgadas);% Pasante", 25.4),
+        ("Tamaño (pulg.);% Pasante", 25.4),
+        ("Tamaño (metros);% Pasante", 1000.0),
+        ("Tamaño (micras);% Pasante", 0.001),
+        ("Ouverture (pouces);Passant", 25.4),
+        ("Ouverture (mètres);Passant", 1000.0),
+        ("Apertura (pollici);Passante", 25.4),
+        ("Setaccio (metri);Passante cumulato %", 1000.0),
+        ("Peneira (polegadas);Passante", 25.4),
+        ("Peneira (mm);% passando", 1.0),
+        ("Sito (mm);Przechodzi %", 1.0),
+        ("Sikt (mm);Passerande mängd %", 1.0),
+        ("Elek (mm);Geçen %", 1.0),
+        ("Размер (мм);Проход %", 1.0),
+        ("Size (mil);passing", 0.0254),
+        ("Size (thou);passing", 0.0254),
+        ("Size (nm);passing", 1e-6),
+        ("Size (yd);passing", 914.4),
+    ] {
+        let found = p50_mm(&table(header, mm));
+        assert!((found / 120.0 - 1.0).abs() < 1e-6, "{header}: {found}");
+    }
+    // Of a unit that is none of ours it is said.
+    let (_, said) = read(&table("Size (yd);passing", 914.4));
+    assert_eq!(said, ["sizes in yards are taken for ft times 3"]);
+}
+
+#[test]
+fn what_stays_is_understood_in_them_too() {
+    for header in [
+        "Peneira (mm);% retido acumulado",
+        "Setaccio (mm);% trattenuto cumulato",
+        "Sito (mm);pozostałość kumulowana %",
+        "Elek (mm);kümülatif kalan %",
+        "Сито (мм);накопленный остаток %",
+    ] {
+        let (set, _) = read(&format!("{header}\n40;0\n20;30\n10;80\n"));
+        let points = set.curves[0].distribution.points();
+        assert_eq!(
+            points,
+            [[10.0, 20.0], [20.0, 70.0], [40.0, 100.0]],
+            "{header}"
+        );
+    }
+}
+
+/// A millimetre is never guessed where the name says something else.
+#[test]
+fn what_is_no_known_length_is_refused() {
+    for (header, wanted) in [
+        (
+            "Size (cubits);passing",
+            "column 'Size (cubits)': 'cubits' is no known unit of sizes",
+        ),
+        (
+            "Size (px);passing",
+            "column 'Size (px)' is in pixels, which are no lengths",
+        ),
+        (
+            "Size (mm2);passing",
+            "column 'Size (mm2)' is an area, no size",
+        ),
+        (
+            "Size (mm³);passing",
+            "column 'Size (mm³)' is a volume, no size",
+        ),
+        (
+            "Size radius (mm);passing",
+            "column 'Size radius (mm)' is a radius, half of a size",
+        ),
+        (
+            "Size radius;passing",
+            "column 'Size radius' is a radius, half of a size",
+        ),
+    ] {
+        let (line, text) = fault(&table(header, 1.0));
+        assert_eq!(line, Some(1), "{header}");
+        assert!(text.starts_with(wanted), "{text}");
+    }
+    // The user's word goes before what is not known.
+    let columns = DistributionColumns {
+        unit: Some(LengthUnit::Centimetre),
+        ..DistributionColumns::default()
+    };
+    let (set, _) = size_distributions(&table("Size (Ellen);passing", 10.0), &columns).unwrap();
+    assert_eq!(set.unit, LengthUnit::Centimetre);
+    // How was sieved is no unit.
+    let (set, said) = read(&table("Sieve size (ASTM E11, square opening);passing", 1.0));
+    assert_eq!(
+        (set.unit, said.len()),
+        (LengthUnit::Millimetre, 1),
+        "{said:?}"
+    );
+}
+
+/// As a finder's files had it: 2700 times too large where 0.1 was taken for a percent.
+#[test]
+fn percentiles_called_by_shares() {
+    for header in [
+        "d(0.1),d(0.5),d(0.9)",
+        "\"D(v,0.1)\",\"D(v,0.5)\",\"D(v,0.9)\"",
+    ] {
+        let (set, said) = read(&format!("photo,{header}\nA,10.383,120,295.58\n"));
+        let points = set.curves[0].distribution.points();
+        assert_eq!(
+            points,
+            [[10.383, 10.0], [120.0, 50.0], [295.58, 90.0]],
+            "{header}"
+        );
+        let wanted = "percentiles are called by shares of 1: of 0.5 it is the size that 50 % pass";
+        assert_eq!(said[0], wanted);
+    }
+    assert!(
+        fault("photo,d0.1,d0.2\nA,1,2\n")
+            .1
+            .contains("which nothing says")
+    );
+    // Percents below 1 beside others are percents.
+    let (set, _) = read("photo,D0.1,D1,D5\nA,1,2,3\n");
+    assert_eq!(set.curves[0].distribution.points()[0], [1.0, 0.1]);
+}
+
+/// Split-Desktop's and others' names of sizes that a percent passes.
+#[test]
+fn other_names_of_percentiles() {
+    let (set, said) =
+        read("Image,F10 (cm),F50 (cm),F80 (cm),Topsize (cm)\nA,1.0383,12,23.384,49\n");
+    assert_eq!(set.unit, LengthUnit::Centimetre);
+    assert_eq!(
+        set.curves[0].distribution.points(),
+        [[1.0383, 10.0], [12.0, 50.0], [23.384, 80.0]]
+    );
+    assert_eq!(said, ["columns that are not used: Topsize (cm)"]);
+    let (set, said) = read("photo,10 % passing (cm),50 % passing (cm)\nA,1,12\n");
+    assert_eq!((set.unit, said), (LengthUnit::Centimetre, vec![]));
+    assert_eq!(
+        set.curves[0].distribution.points(),
+        [[1.0, 10.0], [12.0, 50.0]]
+    );
+    let (set, _) = read("Image,10%,20%,50%,80%\nA,1.0383,3.4284,12,23.384\n");
+    assert_eq!(set.curves[0].distribution.points()[2], [12.0, 50.0]);
+}
+
+#[test]
+fn a_unit_above_the_names_counts() {
+    for text in [
+        "Units: inches\nsize;passing\n4.7244;50\n9;90\n",
+        "Sieve analysis, all sizes in inches\nSieve;Passing\n4.7244;50\n9;90\n",
+        "# made by me\n# unit: inches\nsize;passing\n4.7244;50\n9;90\n",
+        "Sieve analysis blast 14 (sizes in inches)\n\nsize;passing\n4.7244;50\n9;90\n",
+    ] {
+        let (set, said) = read(text);
+        assert_eq!(set.unit, LengthUnit::Inch, "{text}");
+        assert!(
+            said.iter()
+                .any(|of| of.contains("the unit of sizes is that of line")),
+            "{said:?}"
+        );
+    }
+    // What the column says itself goes before it, and so does the user.
+    let (set, _) = read("Units: inches\nsize_cm;passing\n4;50\n9;90\n");
+    assert_eq!(set.unit, LengthUnit::Centimetre);
+    let (line, text) = fault("Sieve analysis, cm\nsize;passing\n4;50\n9;90\n");
+    assert_eq!(line, Some(1));
+    assert!(
+        text.contains("'cm' in this line above them may be it or not"),
+        "{text}"
+    );
+}
+
+#[test]
+fn inches_with_fractions_and_numbered_sieves() {
+    let (set, _) = read("Sieve (in),Passing\n20,100\n15 3/4,98\n10,85\n5 1/2,62\n1½,30\n");
+    let mm: Vec<f64> = (set.curves[0].distribution.points().iter())
+        .map(|[size, _]| size * set.unit.metres() * 1e3)
+        .collect();
+    // 1 1/2 in. is a sieve of ASTM E11, 37.5 mm; the others have no place there but as inches.
+    for (found, wanted) in mm.iter().zip([37.5, 139.7, 254.0, 400.05, 508.0]) {
+        assert!((found - wanted).abs() < 1e-9, "{mm:?}");
+    }
+    let (set, said) = read("US Mesh,% Passing\n4,54\n10,40\n200,9.9\n");
+    let sizes = set.curves[0]
+        .distribution
+        .points()
+        .iter()
+        .map(|point| point[0]);
+    assert_eq!(sizes.collect::<Vec<_>>(), [0.075, 2.0, 4.75]);
+    assert_eq!(
+        said,
+        ["names of sieves are taken for the openings of ASTM E11"]
+    );
+    for header in ["Mesh", "Tyler mesh"] {
+        let text = format!("{header},% Passing\n4,54\n10,40\n");
+        assert!(
+            fault(&text).1.contains("is the number of a sieve"),
+            "{header}"
+        );
+    }
+}
+
+/// What its name calls percent and ends at 1 or below may be either: a hundred times too fine or too coarse.
+#[test]
+fn percents_up_to_one_are_asked_about() {
+    for top in ["0.9", "1.0"] {
+        let text = fault(&format!("size_mm,percent_passing\n1,0.1\n2,0.2\n8,{top}\n")).1;
+        assert!(text.contains("says percent, and ends at"), "{text}");
+    }
+    for (header, end) in [
+        ("passing", ""),
+        ("passing (share of 1)", ""),
+        ("percent_passing", "%"),
+    ] {
+        let (set, _) = read(&format!(
+            "size_mm,{header}\n1,0.1{end}\n2,0.2{end}\n8,1.0{end}\n"
+        ));
+        let wanted = if end.is_empty() { 100.0 } else { 1.0 };
+        assert_eq!(
+            set.curves[0].distribution.points()[2],
+            [8.0, wanted],
+            "{header}"
+        );
+    }
+}
+
+#[test]
+fn names_that_differ_by_their_spelling_are_said() {
+    let (set, said) = read(
+        "method,trial,size_mm,passing\nSieve,1,1,10\nSieve,1,2,90\nsieve,01,1,20\nsieve,01,2,80\n",
+    );
+    assert_eq!(set.curves.len(), 2);
+    assert_eq!(
+        said,
+        ["'Sieve / 1' and 'sieve / 01' are two curves, whose names differ by their spelling alone"]
+    );
+}
