@@ -6,9 +6,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
+use super::comparison::{MeasuredBy, compare_known};
+use super::repeats::measured_by;
 use super::{
     Comparison, ComparisonOptions, DistributionSet, Fit, FitOptions, LabelledDistribution, Model,
-    Repeatability, SieveSeries, Weighting, compare, fit, repeatability,
+    Repeatability, SieveSeries, Weighting, fit, repeatability,
 };
 use crate::fault::Fault;
 use crate::jobs::Progress;
@@ -91,18 +93,27 @@ impl Analysis {
         progress: &Progress,
     ) -> Result<Self, Fault> {
         let (mut steps, mut warnings) = (Vec::new(), Vec::new());
+        // Between its own sieves nothing was measured.
+        let measured: Vec<(String, usize)> = (set.curves.iter())
+            .map(|curve| {
+                (
+                    curve.labels.method.clone(),
+                    curve.distribution.points().len(),
+                )
+            })
+            .collect();
         let mut photos = set;
         if let Some(series) = options.sieves {
-            let (set, left_out) = photos.resampled(series)?;
+            let (set, said) = photos.resampled(series)?;
             photos = set;
-            warnings.extend(left_out);
+            warnings.extend(said);
             steps.push(format!(
                 "All curves were taken at the sieves of {}.",
                 series.name()
             ));
         }
-        let (trials, left_out) = photos.photos_merged(options.merging, None)?;
-        warnings.extend(left_out);
+        let (trials, merging_said) = photos.photos_merged(options.merging, None)?;
+        warnings.extend(merging_said);
         if trials.curves.len() < photos.curves.len() {
             steps.push(format!(
                 "The {} curves of photos became {} of trials: {}.",
@@ -120,7 +131,14 @@ impl Analysis {
             ));
         }
         progress.stage("comparing");
-        let comparison = compare(
+        let known_by = |method: &str| {
+            measured_by(
+                &photos.of(method, None),
+                options.merging,
+                most_points(&measured, method),
+            )
+        };
+        let comparison = compare_known(
             &trials,
             &ComparisonOptions {
                 reference: reference.clone().unwrap_or_default(),
@@ -128,6 +146,7 @@ impl Analysis {
                 envelope_percent: options.envelope_percent,
                 percentiles: options.percentiles.clone(),
             },
+            &known_by,
         );
         let repeatability = repeated(&photos, &trials, reference.as_ref(), options, progress)?;
         Ok(Self {
@@ -148,6 +167,12 @@ impl Analysis {
         let failed = failed.filter_map(|(_, found)| found.as_ref().err());
         failed.map(|fault| format!("no analysis of variance: {fault}"))
     }
+}
+
+/// How many points the curves of a method have at most.
+fn most_points(measured: &[(String, usize)], method: &str) -> Option<usize> {
+    let own = measured.iter().filter(|(name, _)| name == method);
+    own.map(|(_, points)| *points).max()
 }
 
 impl DistributionSet {
@@ -203,8 +228,29 @@ fn repeated(
     Ok(found)
 }
 
+/// The function fitted to every curve of an analysis' trials, in their order, or why there is none; each known by how far its photos
+/// differ, where it is of photos.
+///
+/// # Errors
+///
+/// "cancelled".
+pub fn fit_trials(
+    analysis: &Analysis,
+    model: Model,
+    merging: Weighting,
+    progress: &Progress,
+) -> Result<Vec<Result<Fit, Fault>>, Fault> {
+    let plain = |_: &LabelledDistribution| Ok(FitOptions::default());
+    let known_by = |curve: &LabelledDistribution| {
+        let labels = &curve.labels;
+        let photos = analysis.photos.of(&labels.method, Some(&labels.trial));
+        measured_by(&photos, merging, None)
+    };
+    fit_known(&analysis.trials, model, plain, known_by, progress)
+}
+
 /// The function fitted to every curve of a set, in their order, or why there is none. `options_of` says
-/// how each is fitted.
+/// how each is fitted. A curve of a photo has no confidence bands: nobody knows by it how far photos differ.
 ///
 /// # Errors
 ///
@@ -215,12 +261,31 @@ pub fn fit_each(
     options_of: impl Fn(&LabelledDistribution) -> Result<FitOptions, Fault> + Sync,
     progress: &Progress,
 ) -> Result<Vec<Result<Fit, Fault>>, Fault> {
+    let known_by = |curve: &LabelledDistribution| match curve.labels.photo.is_empty() {
+        true => MeasuredBy::Points(None),
+        false => MeasuredBy::Repeats(Vec::new()),
+    };
+    fit_known(set, model, options_of, known_by, progress)
+}
+
+/// The same, with what the bands of each rest on.
+fn fit_known(
+    set: &DistributionSet,
+    model: Model,
+    options_of: impl Fn(&LabelledDistribution) -> Result<FitOptions, Fault> + Sync,
+    known_by: impl Fn(&LabelledDistribution) -> MeasuredBy + Sync,
+    progress: &Progress,
+) -> Result<Vec<Result<Fit, Fault>>, Fault> {
     progress.stage("fitting");
     let done = AtomicU64::new(0);
     let total = set.curves.len() as u64;
     let one = |curve: &LabelledDistribution| {
         progress.advance(done.fetch_add(1, Ordering::Relaxed), total)?;
-        Ok(options_of(curve).and_then(|options| fit(&curve.distribution, model, &options)))
+        let found = options_of(curve).and_then(|options| fit(&curve.distribution, model, &options));
+        Ok(found.map(|fit| match known_by(curve) {
+            MeasuredBy::Repeats(left_out) => fit.of_repeats(&left_out),
+            MeasuredBy::Points(_) => fit,
+        }))
     };
     set.curves.par_iter().map(one).collect()
 }

@@ -10,6 +10,7 @@
 //! fit             least squares, covariance, percentiles with confidence bands
 //! comparison      methods against the reference: residuals, norms, envelopes, shifts
 //! anova           one-way analysis of variance
+//! repeats         what is left of a mean of photos without one after another: what its bands rest on
 //! analysis        all of it for a table of methods: sieves, merging, the reference, what is said
 //! effort          time that each step took
 //! ```
@@ -28,11 +29,17 @@ mod fit;
 mod functions;
 mod joining;
 mod merging;
+mod repeats;
+#[cfg(test)]
+#[allow(clippy::expect_used, reason = "in a test a panic is the report")]
+mod repeats_tests;
 mod sieve_series;
 
 use fragscale_core::{fault, jobs, units};
 
-pub use analysis::{Analysis, AnalysisOptions, MARKED_PERCENTILES, SIGNIFICANCE, fit_each};
+pub use analysis::{
+    Analysis, AnalysisOptions, MARKED_PERCENTILES, SIGNIFICANCE, fit_each, fit_trials,
+};
 pub use anova::{Anova, Repeatability, Variation, repeatability};
 pub use comparison::{
     Comparison, ComparisonOptions, CurveNorm, Improvement, MeanPoint, MethodComparison,

@@ -11,6 +11,7 @@
 //! None has a sieve above 125 mm, and none is invented here: coarser rock keeps the sizes that it was
 //! measured at.
 
+use super::distribution::as_typed;
 use super::{DistributionSet, LabelledDistribution, SizeDistribution};
 use crate::fault::Fault;
 use crate::units::LengthUnit;
@@ -180,6 +181,9 @@ const EN_933_2_SET_1: &[f64] = &[5.6, 11.2, 22.4, 45.0];
 
 const EN_933_2_SET_2: &[f64] = &[6.3, 10.0, 12.5, 14.0, 20.0, 40.0];
 
+/// Sizes nearer to a sieve's than this share are of that sieve: inches that were converted.
+const SAME_SIEVE: f64 = 1e-9;
+
 /// A distribution at other sizes than it was measured at.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resampled {
@@ -239,7 +243,9 @@ pub(super) fn keep_nearest_certain(points: &mut Vec<[f64; 2]>) {
 }
 
 impl DistributionSet {
-    /// Every curve at the sieves of a series, with what is not known there, one sentence a curve.
+    /// Every curve at the sieves of a series, with what is not known there and what was measured beyond them, one sentence each. Where a
+    /// curve was measured at sizes beyond the series' ends (blasted rock above 125 mm) it keeps them: left out, they would seem never to
+    /// have been measured, and a function fitted to the rest would guess them.
     ///
     /// # Errors
     /// Where a curve has fewer than two of them where it was measured.
@@ -257,7 +263,32 @@ impl DistributionSet {
                     fault.remedy,
                 )
             };
-            let found = resample(&curve.distribution, &openings).map_err(named)?;
+            let measured = curve.distribution.points().iter().map(|point| point[0]);
+            let is_beyond = |size: &f64| {
+                openings
+                    .first()
+                    .is_some_and(|least| *size < least * (1.0 - SAME_SIEVE))
+                    || openings
+                        .last()
+                        .is_some_and(|most| *size > most * (1.0 + SAME_SIEVE))
+            };
+            let beyond: Vec<f64> = measured.filter(is_beyond).collect();
+            let sizes = [&openings[..], &beyond].concat();
+            let found = resample(&curve.distribution, &sizes).map_err(named)?;
+            let kept = beyond.iter().filter(|size| {
+                let mut points = found.distribution.points().iter();
+                points.any(|point| point[0] == **size)
+            });
+            let kept: Vec<String> = kept.map(|size| as_typed(*size)).collect();
+            if let (Some(least), Some(most)) = (kept.first(), kept.last()) {
+                warnings.push(format!(
+                    "{}{} has no sieve for what was measured at {} sizes ({least} to {most} {}): they are kept as they are",
+                    curve.labels.in_front(),
+                    series.name(),
+                    kept.len(),
+                    self.unit
+                ));
+            }
             if let (Some(least), Some(most)) = (found.unknown.first(), found.unknown.last()) {
                 warnings.push(format!(
                     "{}{} of the {} sieves of {} ({least} to {most} {}) lie outside of what was \
@@ -406,6 +437,38 @@ mod tests {
         assert!(fault.what.contains("10 to 1000"), "{fault}");
         assert!(resample(&closed, &[1.0, 2.0]).is_err());
         assert!(resample(&closed, &[]).is_err());
+    }
+
+    /// As a finder's file: ASTM E11 ends at 125 mm, and half of the rock was measured above.
+    #[test]
+    fn what_is_coarser_than_the_series_is_kept() {
+        let points = [
+            [63.0, 30.5821],
+            [90.0, 40.035],
+            [125.0, 51.5956],
+            [180.0, 67.5971],
+            [250.0, 83.0443],
+            [355.0, 95.8504],
+            [500.0, 100.0],
+        ];
+        let set = DistributionSet {
+            unit: LengthUnit::Millimetre,
+            curves: vec![LabelledDistribution {
+                labels: Labels::default(),
+                weight: None,
+                distribution: SizeDistribution::new(points.to_vec()).expect("a distribution"),
+            }],
+        };
+        let (found, said) = set.resampled(SieveSeries::AstmE11).expect("sieves");
+        let kept = &found.curves[0].distribution;
+        assert!(kept.points().ends_with(&points[3..]), "{:?}", kept.points());
+        // What was measured of P80 stays what it is.
+        let p80 = set.curves[0].distribution.size_at(80.0);
+        assert_eq!(kept.size_at(80.0), p80);
+        assert!(
+            said[0].contains("has no sieve for what was measured at 4 sizes (180 to 500 mm)"),
+            "{said:?}"
+        );
     }
 
     #[test]

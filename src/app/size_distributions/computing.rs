@@ -5,9 +5,7 @@ use super::Edit;
 use super::drawing::Drawing;
 use super::fitted_curve::FittedCurve;
 use crate::fault::Fault;
-use crate::fragmentation::{
-    Analysis, AnalysisOptions, DistributionSet, FitOptions, PERCENTILES, fit_each,
-};
+use crate::fragmentation::{Analysis, AnalysisOptions, DistributionSet, PERCENTILES, fit_trials};
 use crate::jobs::Progress;
 
 /// What was computed.
@@ -45,8 +43,7 @@ pub(crate) fn compute(edition: u64, edit: Edit, progress: &Progress) -> Result<C
         level: settings.level,
     };
     let analysis = Analysis::of(set, &options, progress)?;
-    let plain = |_: &_| Ok(FitOptions::default());
-    let fits = fit_each(&analysis.trials, settings.model, plain, progress)?;
+    let fits = fit_trials(&analysis, settings.model, options.merging, progress)?;
     let fits = analysis.trials.curves.iter().zip(fits).map(|(curve, fit)| {
         let percentiles = fit.iter().flat_map(|fit| {
             PERCENTILES.map(|percent| fit.percentile(percent, 1.0 - settings.level))

@@ -19,6 +19,15 @@ pub struct MeanPoint {
     pub trials: usize,
 }
 
+/// What a band of a mean of curves rests on.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum MeasuredBy {
+    /// Points that were measured one by one, so many of each curve at most; `None`: all that it has.
+    Points(Option<usize>),
+    /// The mean without one photo or trial after another; empty where there is one photo alone.
+    Repeats(Vec<SizeDistribution>),
+}
+
 /// A method's mean curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MethodCurve {
@@ -33,7 +42,8 @@ pub struct MethodCurve {
 }
 
 impl MethodCurve {
-    /// The mean of a method's trials (their names and distributions, one or more) with its fit.
+    /// The mean of a method's trials (their names and distributions, one or more) with its fit, whose bands rest on
+    /// what was `measured`.
     ///
     /// # Errors
     ///
@@ -42,6 +52,7 @@ impl MethodCurve {
         method: &str,
         trials: &[(&str, &SizeDistribution)],
         model: Model,
+        measured: MeasuredBy,
     ) -> Result<Self, Fault> {
         let distributions: Vec<&SizeDistribution> = trials.iter().map(|(_, d)| *d).collect();
         let points = mean_points(&distributions);
@@ -50,11 +61,21 @@ impl MethodCurve {
             Fault::new(what, fault.remedy)
         };
         let whole = whole_mean(&points, trials.len()).map_err(named)?;
+        let fit = fit(&whole, model, &FitOptions::default()).map_err(named)?;
+        let fit = match measured {
+            MeasuredBy::Repeats(left_out) => fit.of_repeats(&left_out),
+            MeasuredBy::Points(measured) => {
+                // Between their own sieves trials were not measured.
+                let own = distributions.iter().map(|own| own.points().len()).max();
+                let all = whole.points().len();
+                fit.of_fewer_points(all, measured.or(own).unwrap_or(all).min(all))
+            }
+        };
         Ok(Self {
             method: method.to_owned(),
             trials: trials.iter().map(|(name, _)| (*name).to_owned()).collect(),
             points,
-            fit: fit(&whole, model, &FitOptions::default()).map_err(named)?,
+            fit,
         })
     }
 
@@ -115,6 +136,11 @@ pub(super) fn mean_at(trials: &[&SizeDistribution], size: f64) -> Option<MeanPoi
     })
 }
 
+/// The mean of trials at the sizes that all know; `None` where they share fewer than two.
+pub(crate) fn whole_mean_of(trials: &[&SizeDistribution]) -> Option<SizeDistribution> {
+    whole_mean(&mean_points(trials), trials.len()).ok()
+}
+
 /// The mean at every measured size.
 fn mean_points(trials: &[&SizeDistribution]) -> Vec<MeanPoint> {
     let mut sizes: Vec<f64> = trials
@@ -160,7 +186,13 @@ mod tests {
     #[test]
     fn measured_sizes_are_no_functions() {
         let curve = distribution(&[[10.0, 20.0], [40.0, 60.0], [80.0, 95.0], [160.0, 100.0]]);
-        let method = MethodCurve::new("sieve", &[("1", &curve)], Model::Swebrec).expect("a curve");
+        let method = MethodCurve::new(
+            "sieve",
+            &[("1", &curve)],
+            Model::Swebrec,
+            MeasuredBy::Points(None),
+        )
+        .expect("a curve");
         let size = method.measured_size_at(40.0).expect("measured");
         assert!((size - 20.0).abs() < 1e-9, "{size}");
         assert_eq!(method.measured_size_at(60.0), Some(40.0));

@@ -12,6 +12,8 @@ mod method_curve;
 mod percentiles;
 mod residuals;
 
+pub(crate) use method_curve::{MeasuredBy, whole_mean_of};
+
 pub use curve_norm::{CurveNorm, Improvement, Span};
 pub use method_curve::{MeanPoint, MethodCurve};
 pub use percentiles::{PercentileShift, SCALE_WARNING, Shift};
@@ -109,7 +111,7 @@ impl Comparison {
     }
 }
 
-/// Holds every method of a set against the reference. A method's trials are the set's curves with its
+/// Holds every method of a set, whose points were measured one by one, against the reference. A method's trials are the set's curves with its
 /// name: photos must have been merged, so one curve a method and trial.
 ///
 /// # Errors
@@ -117,13 +119,36 @@ impl Comparison {
 /// No such reference, no other method, a trial of many photos, a method that shares no size with the
 /// reference or that no function can be fitted to, an envelope or percentiles outside of 0 to 100 %.
 pub fn compare(set: &DistributionSet, options: &ComparisonOptions) -> Result<Comparison, Fault> {
+    compare_known(set, options, &|_| MeasuredBy::Points(None))
+}
+
+/// What the bands of a method's fit rest on.
+pub(crate) type Measured<'a> = &'a dyn Fn(&str) -> MeasuredBy;
+
+/// As [`compare`], with what the bands of each method's fit rest on.
+///
+/// # Errors
+/// As [`compare`].
+pub(crate) fn compare_known(
+    set: &DistributionSet,
+    options: &ComparisonOptions,
+    measured: Measured<'_>,
+) -> Result<Comparison, Fault> {
     options.check()?;
     let (reference, others) = methods_of(set, &options.reference)?;
-    let reference = MethodCurve::new(&options.reference, &reference, options.model)?;
+    let reference = MethodCurve::new(
+        &options.reference,
+        &reference,
+        options.model,
+        measured(&options.reference),
+    )?;
     let span = Span::of(&reference.fit.curve)?;
     let methods = others
         .iter()
-        .map(|(method, trials)| against(&reference, span, (method, trials), options))
+        .map(|(method, trials)| {
+            let curve = MethodCurve::new(method, trials, options.model, measured(method))?;
+            against(&reference, span, (curve, trials), options)
+        })
         .collect::<Result<Vec<_>, Fault>>()?;
     let mut improvements = Vec::new();
     for (at, this) in methods.iter().enumerate() {
@@ -196,14 +221,14 @@ fn methods_of<'a>(
     Ok((trials, methods))
 }
 
-/// A method (its name and trials) held against the reference.
+/// A method (its curve and trials) held against the reference.
 fn against(
     reference: &MethodCurve,
     span: Span,
-    (method, trials): (&str, &Trials<'_>),
+    (curve, trials): (MethodCurve, &Trials<'_>),
     options: &ComparisonOptions,
 ) -> Result<MethodComparison, Fault> {
-    let curve = MethodCurve::new(method, trials, options.model)?;
+    let method = &curve.method;
     if let (Some([from, to]), Some([reference_from, reference_to])) =
         (curve.range(), reference.range())
         && (to < reference_from || from > reference_to)

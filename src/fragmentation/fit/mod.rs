@@ -16,6 +16,7 @@
 //!                 gates_gaudin_schuhmann
 //! search          Levenberg-Marquardt within bounds, from many starts
 //! uncertainty     covariance, Student's t
+//! repeats         the same of a mean of photos, by leaving one after another out
 //! notes           what to know before trusting a fit
 //! ```
 
@@ -24,6 +25,7 @@ mod family;
 mod gates_gaudin_schuhmann;
 mod notes;
 mod points;
+mod repeats;
 mod rosin_rammler;
 mod search;
 mod swebrec;
@@ -33,6 +35,7 @@ mod uncertainty;
 
 use family::Family;
 use points::Points;
+use repeats::Repeats;
 use uncertainty::Uncertainty;
 
 use super::{Curve, Model, SizeDistribution};
@@ -88,7 +91,18 @@ pub struct Fit {
     pub degrees_of_freedom: usize,
     /// What to know before trusting it, one sentence each: a parameter at its bound, two optima.
     pub notes: Vec<String>,
-    uncertainty: Option<Uncertainty>,
+    known: Known,
+}
+
+/// What confidence bands rest on.
+#[derive(Debug, Clone, PartialEq)]
+enum Known {
+    /// Nothing: there is none.
+    Nothing,
+    /// How far the points, measured one by one, lie about the function.
+    Scatter(Box<Uncertainty>),
+    /// How far photos or trials differ.
+    Repeats(Repeats),
 }
 
 /// A size that a percent passes, by a fitted function.
@@ -110,33 +124,89 @@ impl Fit {
         Percentile {
             percent,
             size,
-            band: self.band_of_size(size, level),
+            band: self.band_of_size(percent, size, level),
         }
     }
 
-    fn band_of_size(&self, size: f64, level: f64) -> Option<[f64; 2]> {
-        let uncertainty = self.uncertainty.as_ref()?;
-        let reach = uncertainty.reach(level)?;
+    fn band_of_size(&self, percent: f64, size: f64, level: f64) -> Option<[f64; 2]> {
         if !(size.is_finite() && size > 0.0) {
             return None;
         }
-        let (error, slope) = uncertainty.at_size(size.ln());
-        // d ln x = -dP / (dP / d ln x) at a fixed percent.
-        let ratio = (reach * error / slope).exp();
-        let band = [size / ratio, size * ratio];
-        (slope > 0.0 && band[0] > 0.0 && band[1].is_finite()).then_some(band)
+        let reach = match &self.known {
+            Known::Nothing => return None,
+            Known::Scatter(scatter) => {
+                let (error, slope) = scatter.at_size(size.ln());
+                // d ln x = -dP / (dP / d ln x) at a fixed percent.
+                (slope > 0.0).then_some(scatter.reach(level)? * error / slope)?
+            }
+            Known::Repeats(repeats) => repeats.reach(level, |curve| curve.size_at(percent).ln())?,
+        };
+        let band = [size / reach.exp(), size * reach.exp()];
+        (band[0] > 0.0 && band[1].is_finite()).then_some(band)
+    }
+
+    /// The same where its points are the mean of photos: known by how far the photos differ. `left_out` has the mean with one after
+    /// another of them left out; of fewer than two there are no bands. What could not be fitted then takes the bands away, too.
+    #[must_use]
+    pub(crate) fn of_repeats(mut self, left_out: &[SizeDistribution]) -> Self {
+        let again = |distribution: &SizeDistribution| {
+            let found = fit(distribution, self.model, &FitOptions::default());
+            found.ok().map(|found| found.curve)
+        };
+        let curves: Option<Vec<Curve>> = left_out.iter().map(again).collect();
+        let repeats = curves.and_then(Repeats::new);
+        for (index, parameter) in self.parameters.iter_mut().enumerate() {
+            let value = |curve: &Curve| curve.parameters().get(index).copied().unwrap_or(f64::NAN);
+            let error = repeats.as_ref().and_then(|of| of.standard_error(value));
+            parameter.standard_error = parameter.standard_error.and(error);
+        }
+        if repeats.is_none() {
+            let why = match left_out {
+                [] | [_] => {
+                    "its points are of one photo: how far another photo of the rock would differ they do not say"
+                }
+                _ => {
+                    "without some of its photos no function can be fitted: how far they differ is not known"
+                }
+            };
+            let elsewhere = "there are no confidence bands (sizes.csv of delineate has intervals)";
+            self.notes.push(format!("{why}; {elsewhere}"));
+        }
+        self.known = repeats.map_or(Known::Nothing, Known::Repeats);
+        self
+    }
+
+    /// The same where its `points` are read off curves that have `own` each: no more are measured one by one.
+    #[must_use]
+    pub(crate) fn of_fewer_points(mut self, points: usize, own: usize) -> Self {
+        let fewer = points.saturating_sub(own);
+        let left = self.degrees_of_freedom.saturating_sub(fewer);
+        let ratio = points as f64 / own.max(1) as f64;
+        self.known = match self.known {
+            Known::Scatter(_) if left == 0 => Known::Nothing,
+            Known::Scatter(scatter) => Known::Scatter(Box::new(scatter.of_fewer(ratio, left))),
+            known => known,
+        };
+        for parameter in &mut self.parameters {
+            let is_known = self.known != Known::Nothing;
+            let error = parameter.standard_error.filter(|_| is_known);
+            parameter.standard_error = error.map(|error| error * ratio.sqrt());
+        }
+        self
     }
 
     /// The confidence band [low, high] of the fitted percent passing at a size, at a confidence of
     /// `level`: by the delta method with Student's t, cut to 0 to 100. It is of the curve, at each
     /// size for itself; measured points scatter about it more widely.
     pub fn band_at(&self, size: f64, level: f64) -> Option<[f64; 2]> {
-        let uncertainty = self.uncertainty.as_ref()?;
-        let reach = uncertainty.reach(level)?;
         if !(size.is_finite() && size > 0.0) {
             return None;
         }
-        let half = 100.0 * reach * uncertainty.at_size(size.ln()).0;
+        let half = match &self.known {
+            Known::Nothing => return None,
+            Known::Scatter(scatter) => 100.0 * scatter.reach(level)? * scatter.at_size(size.ln()).0,
+            Known::Repeats(repeats) => repeats.reach(level, |curve| curve.percent_passing(size))?,
+        };
         let percent = self.curve.percent_passing(size);
         let band = [percent - half, percent + half].map(|end| end.clamp(0.0, 100.0));
         half.is_finite().then_some(band)
@@ -247,6 +317,6 @@ pub fn fit(
         r_squared: 1.0 - sum / about_mean,
         degrees_of_freedom,
         notes,
-        uncertainty,
+        known: uncertainty.map_or(Known::Nothing, |of| Known::Scatter(Box::new(of))),
     })
 }

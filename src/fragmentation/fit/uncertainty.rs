@@ -75,6 +75,14 @@ impl Uncertainty {
         })
     }
 
+    /// The same, where `ratio` points each stand for one that was measured, with so many degrees of freedom.
+    pub(super) fn of_fewer(mut self, ratio: f64, degrees_of_freedom: usize) -> Self {
+        let all = self.covariance.iter_mut().flatten();
+        all.for_each(|covariance| *covariance *= ratio);
+        self.degrees_of_freedom = degrees_of_freedom;
+        self
+    }
+
     /// The standard error of what has this gradient.
     pub(super) fn of(&self, gradient: &Coordinates) -> f64 {
         let mut variance = 0.0;

@@ -339,7 +339,10 @@ fn definitions(comparison: &Comparison) -> String {
         ),
         (
             "Confidence (95 %)",
-            "95 of 100 such bands hold the true size, if the fitted function is the right one and its residuals are independent"
+            "of photos, how far they differ from each other: the function is fitted again without one photo (or trial) after another; of one \
+             photo alone nobody knows. Of what was sieved, how far the points lie about the function, as if each had been measured by \
+             itself. 95 of 100 such bands hold the true size, if the fitted function is the right one; what is wrong with all photos alike \
+             (outlines, the scale) they do not hold, but the intervals of delineate's sizes.csv do"
                 .to_owned(),
         ),
         (
