@@ -213,7 +213,7 @@ impl Export {
         };
         let sizes = FragmentSizes::of(&measured, &way, &self.flight, &self.looked_up, progress);
         let sizes = sizes.map_err(in_words)?;
-        warnings.extend(sizes.without.iter().cloned());
+        warnings.extend(sizes.warnings());
         let of_tables = FragmentTables {
             flight: &parts.name,
             units,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{MeasuredFragments, PhotoOutlines};
 use crate::delineation;
-use crate::delineation::intervals::{Doubts, SizeInterval, intervals};
+use crate::delineation::intervals::{Doubts, SizeInterval, coarse_end_not_shown, intervals};
 use crate::delineation::mass::{Steps, by_mass};
 use crate::delineation::measures::SieveShape;
 use crate::exports;
@@ -69,9 +69,12 @@ impl State {
             let by_mass = by_mass([(&measured, steps)]);
             let percents = SizeInterval::PERCENTS;
             let intervals = intervals(&[(&measured, steps)], doubts, &percents).unwrap_or_default();
+            let coarse = by_mass.as_ref().ok();
+            let coarse = coarse.and_then(|of| coarse_end_not_shown(of, &intervals));
             let notes = covered
                 .into_iter()
-                .chain(measured.notes(&labels, habits.is_some()));
+                .chain(measured.notes(&labels, habits.is_some()))
+                .chain(coarse);
             let measured = MeasuredFragments {
                 notes: notes.collect(),
                 without: objects,

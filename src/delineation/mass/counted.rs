@@ -30,6 +30,10 @@ pub(crate) struct Counted {
     pub(crate) limit: f64,
     /// How many millimetres one of these lengths is.
     pub(crate) mm: f64,
+    /// The area of fragments that are too large to be seen whole: see [`Counted::size_at_most`].
+    pub(crate) unseen: f64,
+    /// The mass that one of their area stands for: as that of the largest whole one.
+    pub(crate) mass_of_unseen: f64,
 }
 
 impl Counted {
@@ -48,12 +52,15 @@ impl Counted {
             fines: 0.0,
             limit: 0.0,
             mm: 1.0,
+            unseen: 0.0,
+            mass_of_unseen: 1.0,
         };
         let mut off_surface = 0;
         // Those seen between others, by their places in `whole`.
         let (mut between, mut pores) = (Vec::new(), None);
         for (photo, steps) in photos {
             let first = counted.whole.len();
+            let rock_before = counted.rock;
             counted.of_fines += steps.fines * photo.fines;
             counted.limit = counted.limit.max(photo.limit / steps.engine);
             counted.fines += photo.fines;
@@ -80,6 +87,10 @@ impl Counted {
                     .whole
                     .push([world.sieve_size / steps.engine, world.area * stands_for]);
             }
+            if steps.edges {
+                let stands_for = counted.whole[first..].iter().map(|[_, area]| area);
+                counted.unseen += counted.rock - rock_before - stands_for.sum::<f64>();
+            }
             if steps.pores.is_some() {
                 pores = steps.pores;
                 between.extend(first..counted.whole.len());
@@ -88,10 +99,35 @@ impl Counted {
         if counted.whole.is_empty() {
             return Err(counted.nothing(off_surface));
         }
+        counted.unseen = counted.unseen.max(0.0);
+        let sizes = counted.whole.iter().enumerate();
+        let largest = sizes.max_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]));
+        let largest = largest.map(|(place, [_, area])| (place, *area));
         if let Some(porosity) = pores {
             counted.seen_between(&between, porosity);
         }
+        if let Some((place, area)) = largest {
+            counted.mass_of_unseen = counted.whole[place][1] / area;
+        }
         Ok(counted)
+    }
+
+    /// The size that a percent of the mass passes at most; infinite where it lies among fragments that are too large to be seen whole.
+    ///
+    /// What whole fragments stand for by step 1 is, but for chance, all area that is covered, that of the cut ones included (Miles
+    /// 1974). What it lacks is of fragments that a photo hardly ever shows whole, of sizes that nobody knows: larger than the whole
+    /// ones. On the curve they are spread over all sizes, at most they are the largest.
+    pub(crate) fn size_at_most(&self, curve: &SizeDistribution, percent: f64) -> Option<f64> {
+        let (fines, share) = (self.fines_share(), percent / 100.0);
+        let seen: f64 = self.whole.iter().map(|[_, mass]| mass).sum();
+        let unseen = self.unseen * self.mass_of_unseen / seen;
+        let among_seen = (share - fines) / (1.0 - fines) * (1.0 + unseen);
+        match among_seen {
+            1.0.. if unseen > 0.0 => Some(f64::INFINITY),
+            0.0..=1.0 => curve.size_at(100.0 * (fines + (1.0 - fines) * among_seen)),
+            // Among the fines, or all is fines.
+            _ => curve.size_at(percent),
+        }
     }
 
     /// Takes these fragments for seen between others. Together they keep their share of the mass beside those of photos that
@@ -240,6 +276,8 @@ mod tests {
             fines: 0.5,
             limit,
             mm: 1.0,
+            unseen: 0.0,
+            mass_of_unseen: 1.0,
         }
     }
 
@@ -315,6 +353,22 @@ mod tests {
             let found = curve.size_at(percent).unwrap();
             assert!((found - wanted).abs() < 0.004, "P{percent}: {found}");
         }
+    }
+
+    /// As much area as the whole ones stand for is of fragments that none is whole of: half of the mass is larger than all that is
+    /// seen, and what half of it passes is the largest.
+    #[test]
+    fn what_is_too_large_to_be_seen_whole() {
+        let mut seen = counted(&[[1.0, 1.0], [2.0, 1.0], [3.0, 2.0]], 0.5, 0.0);
+        let curve = seen.curve().unwrap();
+        assert_eq!(seen.size_at_most(&curve, 50.0), curve.size_at(50.0));
+        seen.unseen = 4.0;
+        assert_eq!(seen.size_at_most(&curve, 25.0), curve.size_at(50.0));
+        assert_eq!(
+            seen.size_at_most(&curve, 49.9).map(|size| size > 2.9),
+            Some(true)
+        );
+        assert_eq!(seen.size_at_most(&curve, 51.0), Some(f64::INFINITY));
     }
 
     /// One fragment, and many of one size, have a curve.

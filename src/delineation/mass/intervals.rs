@@ -4,12 +4,18 @@
 //! far chance has chosen them; the share of fines and the sizes as a whole are drawn about what was measured of the engine
 //! on simulated piles, which says how far its outlines and the model are off; and the scale about its standard
 //! error. Photos are drawn where there are three or more: of fewer nobody knows how they differ.
+//!
+//! Drawing whole fragments anew gives none that is larger than those. Where the coarse end of a pile hardly fits into the photos, most of
+//! it is cut by their edges; how much is larger than what is whole follows from the area of the cut ones
+//! ([`Counted::size_at_most`](super::counted::Counted)), and upper ends are drawn with that. Where an upper end lies among them, there
+//! is none.
 
 use fragscale_core::fault::Fault;
 use fragscale_core::scale::Draws;
 
 use crate::engine::Habits;
-use crate::mass::{PhotoFragments, Steps, by_mass};
+use crate::mass::counted::Counted;
+use crate::mass::{ByMass, PhotoFragments, Steps};
 
 /// Of outlines that are as right as they can be. Nobody knows a pile's porosity: by outlines of simulated piles a P50 is as it
 /// is by the sieves with the usual one, 11 % too small with none, 3 % too large with 0.5.
@@ -61,7 +67,7 @@ impl Doubts {
 }
 
 /// The 95 % interval of the size that a percent of the mass passes; an end is `None` where it lies outside of
-/// what was measured.
+/// what was measured: below the limit, or among fragments too large to be seen whole.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SizeInterval {
     /// The percent.
@@ -86,9 +92,9 @@ pub fn intervals(
     doubts: Doubts,
     percents: &[f64],
 ) -> Result<Vec<SizeInterval>, Fault> {
-    let limit = by_mass(photos.iter().copied())?.limit;
+    let limit = Counted::of(photos.iter().copied())?.limit;
     let mut draws = Draws::new(0x5eed);
-    let mut found: Vec<Vec<Option<f64>>> = vec![Vec::new(); percents.len()];
+    let mut found: Vec<Vec<[Option<f64>; 2]>> = vec![Vec::new(); percents.len()];
     for _ in 0..DRAWS {
         let drawn: Vec<(PhotoFragments, Steps)> = (0..photos.len())
             .map(|place| {
@@ -107,14 +113,18 @@ pub fn intervals(
         });
         let off = doubts.sizes * draws.normal() + doubts.scale * draws.normal();
         // A draw may hold none but cut ones.
-        let Ok(all) = by_mass(drawn) else {
+        let Ok(all) = Counted::of(drawn) else {
             continue;
         };
+        let curve = all.curve()?;
         for (percent, found) in percents.iter().zip(&mut found) {
-            let size = all.curve.size_at(*percent);
-            let size = size.map(|size| size * off.exp());
+            let sizes = [curve.size_at(*percent), all.size_at_most(&curve, *percent)];
             // What is below the limit is not claimed, and an end there neither.
-            found.push(size.filter(|size| *size >= limit));
+            let claimed = sizes.map(|size| {
+                let size = size.map(|size| size * off.exp());
+                size.filter(|size| *size >= limit)
+            });
+            found.push(claimed);
         }
     }
     let percents = percents.iter().zip(found);
@@ -133,24 +143,43 @@ fn drawn(photo: &PhotoFragments, draws: &mut Draws) -> PhotoFragments {
     }
 }
 
-/// The interval of draws. What is below the limit of what is seen is less than all that is above it.
-fn of_draws(percent: f64, mut found: Vec<Option<f64>>) -> SizeInterval {
-    found.sort_by(|a, b| {
-        let of = |size: &Option<f64>| size.unwrap_or(0.0);
-        of(a).total_cmp(&of(b))
-    });
-    let last = found.len().saturating_sub(1) as f64;
-    let at = |share: f64| {
-        found
-            .get((share * last).round() as usize)
-            .copied()
-            .flatten()
+/// The interval of draws, of each the size and what it is at most. What is below the limit of what is seen is less than all that is above
+/// it.
+fn of_draws(percent: f64, found: Vec<[Option<f64>; 2]>) -> SizeInterval {
+    let at = |side: usize, share: f64| {
+        let mut sizes: Vec<Option<f64>> = found.iter().map(|of| of[side]).collect();
+        sizes.sort_by(|a, b| {
+            let of = |size: &Option<f64>| size.unwrap_or(0.0);
+            of(a).total_cmp(&of(b))
+        });
+        let last = sizes.len().saturating_sub(1) as f64;
+        let found = sizes.get((share * last).round() as usize);
+        found.copied().flatten().filter(|size| size.is_finite())
     };
     SizeInterval {
         percent,
-        low: at(TAIL),
-        high: at(1.0 - TAIL),
+        low: at(0, TAIL),
+        high: at(1, 1.0 - TAIL),
     }
+}
+
+/// That sizes have no upper end, because too much of what is coarse is cut; `None` where all have one.
+pub fn coarse_end_not_shown(by_mass: &ByMass, intervals: &[SizeInterval]) -> Option<String> {
+    let open = intervals.iter().filter(|of| {
+        let size = by_mass.curve.size_at(of.percent);
+        of.high.is_none() && size.is_some_and(|size| size > by_mass.limit)
+    });
+    let names: Vec<String> = open.map(|of| format!("P{}", of.percent)).collect();
+    let (whole, cut) = (by_mass.whole, by_mass.cut);
+    (!names.is_empty()).then(|| {
+        format!(
+            "{cut} of {} fragments are cut by the photo's edge, among them most of the largest: its coarse end is not shown, and {} \
+             {} no upper end; take photos from farther away",
+            whole + cut,
+            names.join(" and "),
+            if names.len() == 1 { "has" } else { "have" }
+        )
+    })
 }
 
 #[cfg(test)]
@@ -189,6 +218,52 @@ mod tests {
         });
         let holds = holds.count();
         assert!((88..=100).contains(&holds), "{holds}");
+    }
+
+    /// Discs of 30 and of 8 strewn evenly over far more than a frame of 40 by 30, as much area of each: hardly one of 30 is ever whole.
+    /// 80 % pass 30, which the upper end holds or does not state.
+    #[test]
+    fn what_hardly_fits_into_the_photo_is_within_the_interval() {
+        let mut draws = Draws::new(8);
+        let (frame, mut holds, mut open) = (glam::DVec2::new(40.0, 30.0), 0, 0);
+        for _ in 0..60 {
+            let mut fragments = Vec::new();
+            for size in [8.0_f64, 30.0] {
+                // So many that their discs would cover half of it all.
+                let around = frame + size;
+                let count = (0.5 * around.x * around.y / (std::f64::consts::PI / 4.0 * size * size))
+                    as usize;
+                for _ in 0..count.max(1) {
+                    let unit = |draws: &mut Draws| draws.place(1 << 20) as f64 / f64::from(1 << 20);
+                    let middle =
+                        glam::DVec2::new(unit(&mut draws), unit(&mut draws)) * around - size / 2.0;
+                    let inside = (middle.min(frame - middle)).min_element() / size;
+                    let mut one = fragment(size, size, inside < 0.5);
+                    // Of a cut one about so much is seen.
+                    if let Some(world) = one.world.as_mut() {
+                        world.area *= (0.5 + inside).clamp(0.0, 1.0);
+                    }
+                    fragments.push(one);
+                }
+            }
+            let photo = PhotoFragments {
+                fragments,
+                frame,
+                fines: 0.0,
+                limit: 1.0,
+                mm: 1.0,
+            };
+            let steps = Steps::default();
+            let Ok(found) = intervals(&[(&photo, steps)], NONE, &[80.0]) else {
+                continue;
+            };
+            holds += usize::from(found[0].high.is_none_or(|high| high >= 30.0));
+            open += usize::from(found[0].high.is_none());
+            let by_mass = crate::mass::by_mass([(&photo, steps)]).unwrap();
+            let said = coarse_end_not_shown(&by_mass, &found);
+            assert_eq!(said.is_some(), found[0].high.is_none(), "{said:?}");
+        }
+        assert!(holds >= 54 && open > 30, "{holds} {open}");
     }
 
     /// Of very many fragments chance says nothing: what is left is what was put in, 1.96 standard errors each way.

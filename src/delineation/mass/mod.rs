@@ -4,7 +4,8 @@
 //!
 //! 1. What a photo's edge cuts is not measured, and large fragments are cut more often. Each whole one stands
 //!    for 1 / ((1 - w / W) (1 - h / H)) of its kind, w and h its extent, W and H the photo's (Miles 1974,
-//!    Lantuejoul 1980).
+//!    Lantuejoul 1980). What that lacks to the area of all, cut ones included, is of fragments too large to be seen whole: it
+//!    widens the intervals upwards (`intervals.rs`).
 //! 2. An engine joins some fragments and does not find others, small ones before large ones: its sizes are too large, by how much
 //!    was measured on simulated piles. They are taken smaller by as much, and with them the limit.
 //! 3. The share of the visible area is taken for the share of the mass (Delesse 1847), which is right on a cut through

@@ -102,7 +102,8 @@ pub(super) fn fragments_report(report: &FragmentsReport<'_>) -> Result<String, F
         "Whole: fragments that count. Cut: fragments that the photo's edge cuts, or what was left out of it; how large they are nobody knows, and they do not \
          count. Not outlined: the share of the area, in the world. Edges: how far the photo's edges are spread, the full width at half of the maximum. Limit: nothing is claimed \
          below it: an engine outlines no narrower ones, and of what people and other tools outlined it is the smallest that \
-         counts. \"May be less\": the lower end of its interval is below the limit.",
+         counts. \"May be less\": the lower end of its interval is below the limit. \"May be much more\": too many of the largest fragments are cut by the \
+         photo's edge for an upper end.",
     ));
     body.push(report.table());
     body.push(heading(2, "Outlines"));

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::table::PhotoOfSizes;
-use crate::delineation::intervals::{Doubts, SizeInterval, intervals};
+use crate::delineation::intervals::{Doubts, SizeInterval, coarse_end_not_shown, intervals};
 use crate::delineation::mass::{
     ByMass, PhotoFragments, StepTaken, Steps, WantedSteps, by_mass, steps_taken,
 };
@@ -54,7 +54,7 @@ pub struct FragmentSizes<'a> {
     pub(super) photos: Vec<Row<'a>>,
     pub(super) all: Option<Row<'a>>,
     /// Photos without a distribution, a sentence each.
-    pub without: Vec<String>,
+    without: Vec<String>,
 }
 
 impl<'a> FragmentSizes<'a> {
@@ -107,6 +107,27 @@ impl<'a> FragmentSizes<'a> {
     /// Why no photo has any, of the first of them.
     pub fn nothing(&self) -> Option<&String> {
         self.without.first().filter(|_| self.photos.is_empty())
+    }
+
+    /// What is to be said of them, a sentence each: photos without a distribution, and coarse ends that photos do not show.
+    pub fn warnings(&self) -> Vec<String> {
+        let note = |row: &Row<'_>| coarse_end_not_shown(&row.by_mass, &row.intervals);
+        let noted: Vec<(&str, String)> = (self.photos.iter())
+            .filter_map(|row| Some((row.photo, note(row)?)))
+            .collect();
+        let mut said = self.without.clone();
+        // Of many photos the first stands for all.
+        if let Some((photo, note)) = noted.first() {
+            let others = match noted.len() - 1 {
+                0 => String::new(),
+                1 => " (and another photo likewise)".to_owned(),
+                more => format!(" (and {more} other photos likewise)"),
+            };
+            said.push(format!("{photo}: {note}{others}"));
+        }
+        let all = self.all.as_ref().filter(|_| self.photos.len() > 1);
+        said.extend(all.and_then(|all| Some(format!("{}: {}", all.photo, note(all)?))));
+        said
     }
 
     /// The curves of the photos.

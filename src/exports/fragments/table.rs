@@ -4,7 +4,8 @@ use crate::delineation::intervals::SizeInterval;
 use crate::delineation::mass::ByMass;
 use crate::delineation::measures::Fragment;
 use crate::measured::csv_of;
-use crate::numbers::{significant_digits, with_interval};
+use crate::numbers::significant_digits;
+use crate::season::size_between;
 use crate::units::LengthUnit;
 
 /// The fragments of a photo.
@@ -150,13 +151,14 @@ impl PhotoOfSizes<'_> {
     pub fn size_in_words(&self, percent: f64, factor: f64, unit: &str) -> Option<String> {
         let size = factor * self.by_mass.curve.size_at(percent)?;
         let interval = self.intervals.iter().find(|of| of.percent == percent);
-        let ends = interval.and_then(|of| Some((of.low? * factor, of.high? * factor)));
+        let ends = interval.map_or([None; 2], |of| {
+            [of.low, of.high].map(|end| Some(end? * factor))
+        });
         // Nothing else is said below the limit.
         let is_law = size < factor * self.by_mass.limit;
-        Some(match ends {
-            _ if is_law => format!("{}{unit} by the law", significant_digits(size, 2)),
-            Some((low, high)) => format!("{}{unit}", with_interval(size, low, high)),
-            None => format!("{}{unit}, may be less", significant_digits(size, 2)),
+        Some(match is_law {
+            true => format!("{}{unit} by the law", significant_digits(size, 2)),
+            false => size_between(size, ends, unit),
         })
     }
 }

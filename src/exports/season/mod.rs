@@ -17,6 +17,7 @@ mod trend;
 
 pub use page::season_page;
 pub use row::{FlightFindings, FoundSize, SeasonReport, SeasonRow, SizeShift, VerdictCounts};
+pub(crate) use tables::size_between;
 pub use tables::{
     season_csv, season_json_line, season_json_lines, season_table, size_in_words as size_text,
 };

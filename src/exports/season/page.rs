@@ -21,8 +21,9 @@ pub fn season_page(report: &SeasonReport<'_>) -> String {
         body.push(heading(2, "Sizes over the blasts"));
         body.push(paragraph(
             "What half (P50) and four fifths (P80) of the outlined rock's mass pass, and their 95 % intervals, which \
-             hold what is known of the scales, the fines and the choice of photos and fragments. Two blasts differ for \
-             certain where their intervals do not touch; whether outlines are right, no interval says.",
+             hold what is known of the scales, the fines and the choice of photos and fragments. Two blasts differ \
+             very likely where their intervals do not touch; whether outlines are right, no interval says. \"May be much more\": too \
+             many of the largest fragments are cut by the photos' edges for an upper end.",
         ));
         body.push(html_page::figure(&drawing));
     }

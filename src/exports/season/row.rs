@@ -82,7 +82,7 @@ pub struct FoundSize {
     pub size: Option<f64>,
     /// The lower end of its 95 % interval.
     pub low: Option<f64>,
-    /// The upper end.
+    /// The upper end; `None` where it lies among fragments that are too large to be seen whole.
     pub high: Option<f64>,
 }
 

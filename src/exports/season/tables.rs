@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::row::{FoundSize, SeasonReport, SeasonRow, SizeShift, VerdictCounts};
 use crate::measured::csv_of;
-use crate::numbers::{significant_digits, with_interval};
+use crate::numbers::{significant_digits, within_interval};
 use crate::units::LengthUnit;
 
 /// The sizes that tables have.
@@ -119,12 +119,19 @@ pub fn size_in_words(size: Option<FoundSize>) -> Option<String> {
     let FoundSize {
         size, low, high, ..
     } = size?;
-    Some(match (low, high) {
-        (Some(low), Some(high)) => with_interval(size?, low, high),
-        // The lower end lies below what the photos show.
-        (None, Some(_)) => format!("{}, may be less", significant_digits(size?, 2)),
-        _ => significant_digits(size?, 2),
-    })
+    Some(size_between(size?, [low, high], ""))
+}
+
+/// A size with the ends of its interval, where they lie within what was measured, and the unit behind them.
+pub(crate) fn size_between(size: f64, [low, high]: [Option<f64>; 2], unit: &str) -> String {
+    let alone = || significant_digits(size, 2);
+    match (low, high) {
+        (Some(low), Some(high)) => format!("{}{unit}", within_interval(size, low, high)),
+        (None, Some(_)) => format!("{}{unit}, may be less", alone()),
+        // Too much of what is coarse is cut by the photos' edges.
+        (Some(_), None) => format!("{}{unit}, may be much more", alone()),
+        (None, None) => format!("{}{unit}, may be less or much more", alone()),
+    }
 }
 
 /// A line a flight, for people.

@@ -87,10 +87,12 @@ pub(super) fn drawing(report: &SeasonReport<'_>) -> Option<String> {
         for (index, size) in &found {
             let Some((found, size)) = size else { continue };
             let x = place_x(*index) + aside;
-            if let (Some(low), Some(high)) = (found.low, found.high) {
-                let [low, high] = [low, high].map(place_y);
+            if let Some(low) = found.low.map(place_y) {
+                // Without an upper end it goes out of the drawing, and has no cap there.
+                let high = found.high.map_or(TOP, place_y);
                 pen.line(&[[x, low], [x, high]], colour, 1.4, Dash::Solid);
-                for y in [low, high] {
+                let caps = [Some(low), found.high.map(place_y)];
+                for y in caps.into_iter().flatten() {
                     pen.line(&[[x - cap, y], [x + cap, y]], colour, 1.4, Dash::Solid);
                 }
             }

@@ -148,7 +148,7 @@ pub(in crate::cli) fn delineate_of(
             let what = "no photo has a size distribution";
             not_all = Some(Fault::new(what, format!("the first: {first}")));
         }
-        warnings.extend(sizes.without.iter().cloned());
+        warnings.extend(sizes.warnings());
         warnings.extend(arguments.mass.not_taken(&done));
         let law = arguments.mass.tail_in_words();
         let of_tables = FragmentTables {
