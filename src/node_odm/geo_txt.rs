@@ -83,6 +83,7 @@ mod tests {
             time: None,
             size: (4000, 3000),
             is_turned: false,
+            shown: 1,
             place,
             relative_altitude: None,
             laser_range: None,

@@ -127,13 +127,15 @@ impl State {
         };
         open.fragments.masks_refused = None;
         let (flight, settings, number) = (open.flight().clone(), open.settings(), open.number);
+        let files = open.files.photo_files.clone();
         let work = move |_: &Progress| -> Result<(LabelImage, Vec<String>), String> {
             let others = OutlinesOfOthers::open(&path, of).map_err(|error| error.to_string())?;
             let posed = &flight.parts().photos[photo];
             let camera = flight.camera(posed);
             let left_out = delineation::photo::left_out(&settings, posed, camera);
             // She says which photo it is.
-            let masks = others.of_flights_photo(&flight, photo, &left_out, true);
+            let file = files.get(photo).and_then(|file| file.path.as_deref());
+            let masks = others.of_flights_photo(&flight, (photo, file), &left_out, true);
             let masks = masks.map_err(|fault| fault.to_string())?;
             Ok((masks.labels, masks.notes))
         };

@@ -28,6 +28,9 @@ struct Document {
     crs: Value,
     /// The photo of a GeoJSON of ours.
     photo: Option<String>,
+    /// The size of the photo that a GeoJSON is of, where somebody states it.
+    width: Option<u32>,
+    height: Option<u32>,
     /// What the positions of a GeoJSON of ours are, where they are not pixels; or those of a geometry alone.
     coordinates: Option<Coordinates>,
     /// Of a feature alone.
@@ -59,7 +62,8 @@ pub(super) fn read(text: &[u8], is_own: bool) -> Result<(Vec<OutlinedImage>, boo
                 "give the label image beside it, or outlines in pixels (delineate --also geojson)";
             return Err(Fault::new(what, remedy));
         }
-        let image = geojson::image(features, &document.crs, document.photo, is_own)?;
+        let mut image = geojson::image(features, &document.crs, document.photo, is_own)?;
+        image.size = document.width.zip(document.height);
         return Ok((vec![image], true));
     }
     match (document.images, document.annotations) {

@@ -9,7 +9,7 @@
 //! - A number that reaches all four edges is that of what lies between the others: no fragment, which is said.
 //! - Many more regions than numbers are refused: numbers that several fragments share are of no fragment.
 //! - A picture of colours whose three parts are the same is one of gray. Others are refused: colours are no
-//!   numbers.
+//!   numbers. Of a PNG with a palette (Pascal VOC, QuPath) the indices are the numbers, which is said.
 
 use std::collections::BTreeSet;
 use std::io::Cursor;
@@ -49,7 +49,7 @@ fn is_png(bytes: &[u8]) -> bool {
 pub(super) fn read(bytes: &[u8], photo: &OutlinedPhoto<'_>, is_own: bool) -> Result<Masks, Fault> {
     let mut notes = Notes::default();
     let mut labels = match is_png(bytes) {
-        true => png(bytes, photo)?,
+        true => png(bytes, photo, &mut notes)?,
         false => tiff(bytes, photo, &mut notes)?,
     };
     if !is_own {
@@ -90,8 +90,32 @@ fn labels_of(photo: &OutlinedPhoto<'_>, labels: Vec<u32>) -> LabelImage {
     }
 }
 
+/// The indices of a PNG with a palette; `None` where it has none, or is broken, which is said elsewhere.
+fn indices(bytes: &[u8]) -> Option<Vec<u32>> {
+    let mut decoder = png::Decoder::new(Cursor::new(bytes));
+    decoder.set_transformations(png::Transformations::IDENTITY);
+    let mut reader = decoder.read_info().ok()?;
+    let info = reader.info();
+    if info.color_type != png::ColorType::Indexed {
+        return None;
+    }
+    let (width, bits) = (info.width as usize, info.bit_depth as usize);
+    let mut pixels = vec![0; reader.output_buffer_size()?];
+    let frame = reader.next_frame(&mut pixels).ok()?;
+    let rows = pixels.chunks_exact(frame.line_size.max(1));
+    let labels = rows.flat_map(|row| {
+        (0..width).map(move |x| {
+            // The first pixel has the highest bits of a byte.
+            let (byte, within) = (x * bits / 8, x * bits % 8);
+            let byte = row.get(byte).copied().unwrap_or(0);
+            u32::from(byte << within >> (8 - bits))
+        })
+    });
+    Some(labels.collect())
+}
+
 /// That of a PNG.
-fn png(bytes: &[u8], photo: &OutlinedPhoto<'_>) -> Result<LabelImage, Fault> {
+fn png(bytes: &[u8], photo: &OutlinedPhoto<'_>, notes: &mut Notes) -> Result<LabelImage, Fault> {
     let broken = |error: image::ImageError| {
         let what = format!("it cannot be read as PNG ({error})");
         Fault::new(what, "the file is cut off or damaged: export it again")
@@ -100,6 +124,10 @@ fn png(bytes: &[u8], photo: &OutlinedPhoto<'_>) -> Result<LabelImage, Fault> {
     let (width, height) = decoder.dimensions();
     // What the header claims takes no memory before it is the photo's size.
     check_size(width, height, photo)?;
+    if let Some(labels) = indices(bytes) {
+        notes.say("it has a palette: the numbers of its colours are taken for those of fragments");
+        return Ok(labels_of(photo, labels));
+    }
     let stored = decoder.original_color_type();
     let image = DynamicImage::from_decoder(decoder).map_err(broken)?;
     // Numbers of less than 8 bits are decoded as shades from 0 to 255.

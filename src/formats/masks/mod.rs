@@ -6,6 +6,7 @@
 //! cvat         XML of CVAT for images
 //! outline      what these come down to: masks, their meanings, their pieces
 //! paint        from masks to a label image
+//! drawn_smaller  whether they are of a smaller copy of the photo
 //! regions      in how many pieces each fragment lies
 //! rle  numbers  base64      how pixels, lists and bytes are packed
 //! ```
@@ -21,6 +22,7 @@
 mod base64;
 mod coco;
 mod cvat;
+mod drawn_smaller;
 mod geojson;
 mod json_file;
 mod label_image;

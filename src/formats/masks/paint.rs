@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use super::outline::{Mask, Meaning, OutlinedImage, Piece, Runs, is_odd_of_fragments};
 use super::regions::take_off_behind;
-use super::{Masks, OutlinedPhoto, check_size, renumbered};
+use super::{Masks, OutlinedPhoto, check_size, drawn_smaller, renumbered};
 use crate::fault::Fault;
 use crate::labels::{FINES, LabelImage, NOT_ROCK, spans_of_rings};
 use crate::text::notes::Notes;
@@ -31,6 +31,9 @@ pub(super) fn painted(
 ) -> Result<Masks, Fault> {
     if let Some((width, height)) = image.size {
         check_size(width, height, photo)?;
+    }
+    if !is_own {
+        drawn_smaller::refuse(image, photo)?;
     }
     let mut notes = image.notes.clone();
     let layers = layers(image, photo, &mut notes)?;

@@ -3,6 +3,7 @@
 
 mod named_files;
 mod of_others;
+mod turned;
 
 use std::path::{Path, PathBuf};
 

@@ -6,11 +6,13 @@ use crate::camera::Camera;
 use crate::delineation::leave_out;
 use crate::fault::Fault;
 use crate::flight::Flight;
+use crate::formats::photos::photo_metadata;
 use crate::formats::{FileError, MaskFile, Masks, OutlinedPhoto};
 use crate::outlines::named_files::{
     candidates, files_below, files_of_many, is_namesake, is_photo, is_told_by_folder,
     may_be_outlines, names, rank, stem,
 };
+use crate::outlines::turned;
 use crate::picture;
 use crate::scale::ImageKind;
 
@@ -119,14 +121,15 @@ impl OutlinesOfOthers {
     }
 
     /// The label image of a flight's undistorted photo without what of it is `left_out` (`delineation::photo::left_out`), with what
-    /// is to be said about it. `is_only`: no other photo is asked for, so that a file of one photo is of this one.
+    /// is to be said about it; `photo_file` is where the photo is, if it is there. `is_only`: no other photo is asked for, so that a file of
+    /// one photo is of this one.
     ///
     /// # Errors
     /// Where there is none of this photo, or it cannot be read; the file is named.
     pub fn of_flights_photo(
         &self,
         flight: &Flight,
-        index: usize,
+        (index, photo_file): (usize, Option<&Path>),
         left_out: &[bool],
         is_only: bool,
     ) -> Result<Masks, Fault> {
@@ -135,7 +138,11 @@ impl OutlinesOfOthers {
         let names = || photos.iter().map(|photo| photo.name.as_str());
         let is_other = |other: &&str| *other != photo.name && is_namesake(other, &photo.name);
         let namesake = names().find(is_other);
-        let mut masks = self.of_photo(&photo.name, namesake, flight.camera(photo), is_only)?;
+        // What cannot be read is said where its pixels are wanted.
+        let metadata = photo_file.and_then(|file| photo_metadata::read_file(file).ok());
+        let shown = metadata.map_or(1, |metadata| metadata.shown);
+        let camera = (flight.camera(photo), shown);
+        let mut masks = self.of_photo(&photo.name, namesake, camera, is_only)?;
         leave_out(&mut masks.labels, left_out);
         if is_only {
             let names = names();
@@ -147,7 +154,8 @@ impl OutlinesOfOthers {
     }
 
     /// The label image of the undistorted photo, with what is to be said about it. `namesake` is another photo of the flight
-    /// whose file has the same name. `is_only`: no other photo is asked for, so that a file of one photo is of this one.
+    /// whose file has the same name, `shown` how viewers show the photo (EXIF's Orientation). `is_only`: no other photo is asked for, so that
+    /// a file of one photo is of this one.
     ///
     /// # Errors
     /// Where there is none of this photo, or it cannot be read, or may be the namesake's; the file is named.
@@ -155,7 +163,7 @@ impl OutlinesOfOthers {
         &self,
         name: &str,
         namesake: Option<&str>,
-        camera: &Camera,
+        (camera, shown): (&Camera, u32),
         is_only: bool,
     ) -> Result<Masks, Fault> {
         let photo = OutlinedPhoto {
@@ -222,7 +230,13 @@ impl OutlinesOfOthers {
                 (path, &read)
             }
         };
-        let mut masks = file.of_photo(&photo).map_err(|fault| named(path, fault))?;
+        let is_undistorted = match self.of {
+            Some(of) => of == ImageKind::Undistorted,
+            None => file.is_own(),
+        };
+        // What fragscale exports, viewers do not turn.
+        let shown = if is_undistorted { 1 } else { shown };
+        let mut masks = as_stored(file, &photo, shown).map_err(|fault| named(path, fault))?;
         if let Some(other) = passed_over {
             let file = |path: &Path| {
                 path.file_name()
@@ -234,10 +248,6 @@ impl OutlinesOfOthers {
                 .notes
                 .push(format!("{} is taken, not {}", file(path), file(other)));
         }
-        let is_undistorted = match self.of {
-            Some(of) => of == ImageKind::Undistorted,
-            None => file.is_own(),
-        };
         if self.of.is_none() {
             let note = match is_undistorted {
                 true => "fragscale's own outlines: taken as those of the undistorted photo",
@@ -265,6 +275,35 @@ impl OutlinesOfOthers {
         let same = |other: &str| stem(other).eq_ignore_ascii_case(stem(photo));
         rank(path, photo).is_some() || file.photos().any(same)
     }
+}
+
+/// The labels of a photo as its pixels are stored, which viewers show as `shown` says. Outlines of the photo on its side have the sides of
+/// the photo swapped, and are turned back; of those that have its size, or none, nobody knows.
+fn as_stored(file: &MaskFile, photo: &OutlinedPhoto<'_>, shown: u32) -> Result<Masks, Fault> {
+    let verb = turned::in_words(shown);
+    let found = file.of_photo(photo);
+    if turned::is_on_its_side(shown) && photo.width != photo.height && found.is_err() {
+        let on_its_side = OutlinedPhoto {
+            width: photo.height,
+            height: photo.width,
+            ..*photo
+        };
+        if let Ok(mut masks) = file.of_photo(&on_its_side) {
+            masks.labels = turned::as_stored(&masks.labels, shown);
+            masks.notes.push(format!(
+                "viewers {verb} this photo (EXIF Orientation {shown}), and so are its outlines: they are turned back to its pixels"
+            ));
+            return Ok(masks);
+        }
+    }
+    let mut masks = found?;
+    if shown > 1 {
+        masks.notes.push(format!(
+            "viewers {verb} this photo (EXIF Orientation {shown}), and its outlines are taken as of its pixels as they are stored: look at \
+             them over the photo; where they do not fit, take the mark away (exiftool -n -Orientation=1) and outline it again"
+        ));
+    }
+    Ok(masks)
 }
 
 #[cfg(test)]
@@ -369,7 +408,7 @@ mod tests {
         };
         let found = |name: &str, namesake: Option<&str>| {
             let others = OutlinesOfOthers::open(folder.path(), None).unwrap();
-            others.of_photo(name, namesake, &camera, false)
+            others.of_photo(name, namesake, (&camera, 1), false)
         };
         write("A_labels.png");
         assert!(found("d1/A.jpg", None).is_ok());
@@ -383,5 +422,43 @@ mod tests {
         assert!(found("d1/A.jpg", Some("d2/A.jpg")).is_ok());
         assert!(found("d2/A.jpg", Some("d1/A.jpg")).is_ok());
         assert!(found("d3/A.jpg", Some("d1/A.jpg")).is_err());
+    }
+
+    /// A photo of 6 by 4 that viewers turn: outlined in one that turns it, its outlines are of 4 by 6.
+    #[test]
+    fn outlines_of_a_photo_on_its_side_are_turned_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut camera = Camera {
+            name: String::new(),
+            width: 6,
+            height: 4,
+            fx: 4.0,
+            fy: 4.0,
+            cx: 2.0,
+            cy: 2.0,
+            skew: 0.0,
+            distortion: crate::camera::Distortion::None,
+        };
+        let path = folder.path().join("A_labels.png");
+        // The stored pixel (1, 0) is shown at the top right, one down.
+        let mut image = image::GrayImage::new(4, 6);
+        image.put_pixel(3, 1, image::Luma([7]));
+        image.save(&path).unwrap();
+        let others = OutlinesOfOthers::open(folder.path(), None).unwrap();
+        let found = others.of_photo("A.jpg", None, (&camera, 6), false).unwrap();
+        assert_eq!(found.labels.labels[1], 7);
+        assert!(found.notes.iter().any(|note| note.contains("turned back")));
+        assert!(others.of_photo("A.jpg", None, (&camera, 3), false).is_err());
+        // Of its own size nobody knows, which is said.
+        (camera.width, camera.height) = (4, 6);
+        let found = others.of_photo("A.jpg", None, (&camera, 3), false).unwrap();
+        let asked = "look at them over the photo";
+        assert!(
+            found.notes.iter().any(|note| note.contains(asked)),
+            "{:?}",
+            found.notes
+        );
+        let plain = others.of_photo("A.jpg", None, (&camera, 1), false).unwrap();
+        assert!(!plain.notes.iter().any(|note| note.contains("viewers")));
     }
 }

@@ -83,6 +83,7 @@ mod tests {
             time: None,
             size: (1, 1),
             is_turned: false,
+            shown: 1,
             place: Some(MeasuredPlace {
                 place: Geographic {
                     latitude,

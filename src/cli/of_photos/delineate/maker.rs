@@ -101,7 +101,9 @@ impl<'a> Maker<'a> {
         let camera = flight.camera(photo);
         let spread = edge_spread(image);
         if let Some(others) = self.others {
-            let masks = others.of_flights_photo(flight, index, left_out, self.is_only)?;
+            let file = self.opened.photo_files.get(index);
+            let of = (index, file.and_then(|file| file.path.as_deref()));
+            let masks = others.of_flights_photo(flight, of, left_out, self.is_only)?;
             return Ok(Outlined {
                 labels: masks.labels,
                 by: OutlinedBy::Masks,

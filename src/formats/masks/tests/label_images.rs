@@ -41,6 +41,40 @@ fn pngs_of_8_bits_are_read() {
     assert_eq!(fault.what, "it is a picture in colours, no label image");
 }
 
+/// As Pascal VOC has its masks: what a pixel's colour is says nothing, its number in the palette is the fragment's.
+#[test]
+fn numbers_of_a_palette_are_fragments() {
+    for (bits, depth) in [(8_usize, png::BitDepth::Eight), (4, png::BitDepth::Four)] {
+        let numbers = [0, 7, 7, 3, 0, 5, 7, 3, 4, 4, 0, 0];
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 4, 3);
+        encoder.set_color(png::ColorType::Indexed);
+        encoder.set_depth(depth);
+        encoder.set_palette(
+            (0..16_u8)
+                .flat_map(|of| [of * 16, 255 - of, 9])
+                .collect::<Vec<u8>>(),
+        );
+        let rows = numbers.chunks(8 / bits);
+        let packed: Vec<u8> = rows
+            .map(|pixels| {
+                pixels
+                    .iter()
+                    .fold(0, |byte, number| (byte << (bits % 8)) | number)
+            })
+            .collect();
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_image_data(&packed).unwrap();
+        writer.finish().unwrap();
+        let masks = of_bytes(&bytes).unwrap();
+        assert_eq!(masks.labels.labels, numbers.map(u32::from), "{bits}");
+        assert_eq!(
+            masks.notes,
+            ["it has a palette: the numbers of its colours are taken for those of fragments"]
+        );
+    }
+}
+
 /// A mask of one number is no single fragment, unless we wrote it.
 #[test]
 fn regions_of_a_mask_are_fragments() {

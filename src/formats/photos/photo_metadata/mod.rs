@@ -44,6 +44,8 @@ pub struct PhotoMetadata {
     pub size: (u32, u32),
     /// Whether viewers show these pixels turned or mirrored (EXIF's Orientation).
     pub is_turned: bool,
+    /// EXIF's Orientation, 1 to 8: how viewers show them. 1, as they are stored, where it does not say.
+    pub shown: u32,
     /// Where it was taken.
     pub place: Option<MeasuredPlace>,
     /// Metres above the take-off.
@@ -228,6 +230,10 @@ pub fn read(mut input: impl BufRead + Seek) -> Result<PhotoMetadata, Fault> {
         time: exif.time,
         size,
         is_turned: exif.orientation.is_some_and(|turned| turned > 1),
+        shown: exif
+            .orientation
+            .filter(|shown| (1..=8).contains(shown))
+            .unwrap_or(1),
         relative_altitude: makers::relative_altitude(&xmp),
         laser_range: makers::laser_range(&xmp),
         orientation,
