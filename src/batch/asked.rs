@@ -96,10 +96,15 @@ impl Step {
             one_of("rectified", &["fit", "horizontal", "ortho"]),
         ];
         const SCALE_MAP: [StepOption; 1] = [some_of("layers", &["scale", "depth", "x", "y", "z"])];
-        const DELINEATE: [StepOption; 3] = [
+        const DELINEATE: [StepOption; 7] = [
             one_of("engine", &["learned", "classical"]),
             one_of("shape", &["calibrated", "breadth", "circle"]),
             some_of("also", &["coco", "labelme", "cvat", "geojson", "tiff"]),
+            // Below the folder of each flight.
+            one_of("masks", &[]),
+            some_of("steps", &["edges", "engine", "pores", "fines", "none"]),
+            one_of("porosity", &[]),
+            one_of("tail", &[]),
         ];
         const PSD: [StepOption; 3] = [
             one_of("reference", &[]),
@@ -249,6 +254,28 @@ impl Asked {
                     .to_owned(),
             );
         }
+        for said in self
+            .steps
+            .iter()
+            .filter(|said| said.step == Step::Delineate)
+        {
+            if said.options.contains_key("masks") && said.options.contains_key("engine") {
+                return Err(
+                    "delineate.masks is in place of an engine: leave delineate.engine out"
+                        .to_owned(),
+                );
+            }
+            let porosity = said.options.get("porosity").into_iter().flatten();
+            let is_share = |text: &str| {
+                text.parse()
+                    .is_ok_and(|share: f64| (0.0..=0.9).contains(&share))
+            };
+            if let Some(wrong) = porosity.into_iter().find(|text| !is_share(text)) {
+                return Err(format!(
+                    "delineate.porosity is '{wrong}', no share from 0 to 0.9"
+                ));
+            }
+        }
         self.length_unit().map(|_| ())
     }
 }
@@ -299,5 +326,26 @@ mod tests {
             ..Asked::default()
         };
         assert!(asked.check().unwrap_err().contains("'km'"));
+        let mut asked = Asked::of(&[Step::Delineate]);
+        let value = |text: &str| vec![text.to_owned()];
+        asked.set(Step::Delineate, "masks", value("masks")).unwrap();
+        asked
+            .set(Step::Delineate, "porosity", value("0.4"))
+            .unwrap();
+        assert!(asked.check().is_ok());
+        asked.set(Step::Delineate, "porosity", value("40")).unwrap();
+        assert!(
+            asked
+                .check()
+                .unwrap_err()
+                .contains("no share from 0 to 0.9")
+        );
+        asked
+            .set(Step::Delineate, "porosity", value("0.4"))
+            .unwrap();
+        asked
+            .set(Step::Delineate, "engine", value("learned"))
+            .unwrap();
+        assert!(asked.check().unwrap_err().contains("in place of an engine"));
     }
 }

@@ -10,6 +10,8 @@
 //! [delineate]                              # optional: what can be said of a step, as on the command line
 //! engine = "classical"
 //!
+//! masks = "masks"                          # below the folder of each flight
+//!
 //! [psd]
 //! reference = "sieves.csv"                 # of all flights
 //!
@@ -63,7 +65,12 @@ const KNOWN_KEYS: [(&str, &[&str]); 6] = [
     ),
     ("export", &["photos", "rectified"]),
     ("scale-map", &["layers"]),
-    ("delineate", &["engine", "shape", "also"]),
+    (
+        "delineate",
+        &[
+            "engine", "shape", "also", "masks", "steps", "porosity", "tail",
+        ],
+    ),
     ("psd", &["reference", "model", "merge"]),
 ];
 
@@ -137,12 +144,20 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Season, Fault> {
         };
         for (key, value) in options {
             let wrong = |what: String| at(name, key, what, "correct or remove it");
-            let mut values = texts(value).ok_or_else(|| {
+            // A share is written as a number, all else as text.
+            let number = matches!(value, Value::Float(_) | Value::Integer(_));
+            let number = (number && key == "porosity").then(|| vec![value.to_string()]);
+            let mut values = number.or_else(|| texts(value)).ok_or_else(|| {
                 wrong(format!(
                     "{name}.{key} is neither a text nor a list of texts"
                 ))
             })?;
-            if (step, key.as_str()) == (Step::Psd, "reference") {
+            let is_path = match (step, key.as_str()) {
+                (Step::Psd, "reference") => true,
+                (Step::Delineate, "tail") => values != ["swebrec"],
+                _ => false,
+            };
+            if is_path {
                 let paths = values.iter().map(|value| below(value));
                 values = paths
                     .map(|path| path.to_string_lossy().into_owned())

@@ -64,7 +64,10 @@ fn a_season_says_what_is_done() {
 fn keys_are_those_of_the_steps() {
     for step in Step::ALL {
         for option in step.options() {
-            let value = option.values.first().unwrap_or(&"x");
+            let value = match option.key {
+                "porosity" => "0.4",
+                _ => option.values.first().unwrap_or(&"x"),
+            };
             let text = format!(
                 "format = 1\nsteps = [\"{}\", \"delineate\"]\n[{}]\n{} = \"{value}\"\n[[flight]]\npath = \"b\"\n",
                 step.as_str(),
@@ -81,6 +84,22 @@ fn keys_are_those_of_the_steps() {
             assert!(asked.options.contains_key(option.key), "{text}");
         }
     }
+}
+
+/// Outlines lie below each flight, a share is a number, and a table of the fines beside the file.
+#[test]
+fn the_way_to_the_mass_is_that_of_the_command() {
+    let text = "format = 1\nsteps = [\"delineate\"]\n[delineate]\nmasks = \"masks\"\nsteps = [\"edges\", \"fines\"]\nporosity = 0.3\n\
+                tail = \"fines.csv\"\n[[flight]]\npath = \"b\"\n";
+    let options = &parsed(text).unwrap().asked.steps[0].options;
+    assert_eq!(options["masks"], ["masks"]);
+    assert_eq!(options["steps"], ["edges", "fines"]);
+    assert_eq!(options["porosity"], ["0.3"]);
+    assert_eq!(options["tail"], ["a/fines.csv"]);
+    let law = parsed(&text.replace("fines.csv", "swebrec")).unwrap();
+    assert_eq!(law.asked.steps[0].options["tail"], ["swebrec"]);
+    let fault = parsed(&text.replace("0.3", "30")).unwrap_err();
+    assert!(fault.what.contains("no share from 0 to 0.9"), "{fault}");
 }
 
 /// A wrong value waits for nobody: also where its step is not asked for now.

@@ -70,6 +70,14 @@ const FRAGMENTS: &str = "fragments";
 /// The folder for Split-Desktop.
 pub(super) const SPLIT_DESKTOP: &str = "split-desktop";
 
+/// What is called so in the folder of a flight, which is a folder or a file in one.
+fn beside(flight: &Path, name: &str) -> PathBuf {
+    match flight.is_file() {
+        true => flight.with_file_name(name),
+        false => flight.join(name),
+    }
+}
+
 /// The words of the command that does the step alone, once for each file of a step that writes several.
 fn words(asked: &AskedStep, told: &FlightTold) -> Vec<Vec<OsString>> {
     let in_results = |name: &str| told.to.join(name).into_os_string();
@@ -90,9 +98,14 @@ fn words(asked: &AskedStep, told: &FlightTold) -> Vec<Vec<OsString>> {
         after.push("--force".into());
     }
     for (key, values) in &asked.options {
-        // It is a file to read, not a word.
-        if (asked.step, key.as_str()) != (Step::Psd, "reference") {
-            after.extend(flag(&format!("--{key}"), values.join(",").into()));
+        match (asked.step, key.as_str()) {
+            // It is a file to read, not a word.
+            (Step::Psd, "reference") => {}
+            (Step::Delineate, "masks") => {
+                let masks = values.iter().map(|name| beside(&told.flight, name));
+                after.extend(masks.flat_map(|masks| flag("--masks", masks.into())));
+            }
+            _ => after.extend(flag(&format!("--{key}"), values.join(",").into())),
         }
     }
     let unit = || flag("--unit", told.asked.unit.clone().into());
@@ -253,7 +266,10 @@ mod tests {
         let mut tried = 0;
         for step in Step::ALL {
             for option in step.options() {
-                let free = ["name"];
+                let free = match option.key {
+                    "porosity" => ["0.4"],
+                    _ => ["name"],
+                };
                 let values = match option.values.is_empty() {
                     true => &free[..],
                     false => option.values,
@@ -279,7 +295,7 @@ mod tests {
                 }
             }
         }
-        assert_eq!(tried, 2 + 3 + 5 + 2 + 3 + 5 + 1 + 4 + 3);
+        assert_eq!(tried, 2 + 3 + 5 + 2 + 3 + 5 + 1 + 5 + 1 + 1 + 1 + 4 + 3);
         for unit in Asked::UNITS {
             let mut asked = Asked::default();
             unit.clone_into(&mut asked.unit);
