@@ -232,7 +232,7 @@ fn compared(
     let of = arguments.flight.of_mission(opened);
     let mission = arguments.mission.as_deref();
     mission
-        .map(|mission| compare_flown(mission, of, arguments.take_off, progress))
+        .map(|mission| compare_flown(&[mission], of, arguments.take_off, progress))
         .transpose()
 }
 

@@ -9,8 +9,10 @@ use crate::fault::Fault;
 use crate::files::FileError;
 use crate::flight::Flight;
 use crate::formats::{MissionFile, read_mission};
-use crate::geodesy::{Crs, CrsKind};
+use crate::geodesy::{Crs, CrsKind, geoid_height};
+use crate::geometry::median;
 use crate::jobs::Progress;
+use crate::units::LengthUnit;
 
 /// The flight that came of a mission.
 #[derive(Debug, Clone, Copy)]
@@ -40,24 +42,18 @@ pub struct ComparedFlight {
     pub notes: Vec<String>,
 }
 
-/// Compares a mission with a flight. `take_off` is where the drone took off in the world, where the mission does not say
+/// Compares missions with the flight that came of them: one, or one of each battery in their order. `take_off` is where the drone took off in the world, where the mission does not say
 /// it, or was not followed.
 ///
 /// # Errors
 /// With the mission's file: where it cannot be read, has no photos, or says less than a pose. With the flight's: where its
 /// coordinate system is not known, or its surface cannot be triangulated. Where the work was cancelled.
 pub fn compare_flown(
-    mission: &Path,
+    missions: &[impl AsRef<Path>],
     of: FlightOfMission<'_>,
     take_off: Option<DVec2>,
     progress: &Progress,
 ) -> Result<ComparedFlight, FileError> {
-    let MissionFile {
-        mission: told,
-        notes,
-        ..
-    } = read_mission(mission)?;
-    let in_mission = |fault: Fault| FileError::new(mission, fault);
     let in_flight = |fault: Fault| FileError::new(of.file, fault);
     let crs = of.crs.ok_or_else(|| {
         let what = "nobody says in which coordinate system its places are";
@@ -66,13 +62,23 @@ pub fn compare_flown(
     let crs = Crs::understand(crs).map_err(in_flight)?;
     let parts = of.flight.parts();
     let ground = |place| ground_at(&parts.surface, place);
-    let planned = planned_poses(&told, &crs, take_off, ground).map_err(in_mission)?;
-    if planned.is_empty() {
-        let what = "it has no photos to compare with";
-        return Err(in_mission(Fault::new(
-            what,
-            "give the mission of this flight",
-        )));
+    let (mut planned, mut notes) = (Vec::new(), Vec::new());
+    for mission in missions {
+        let mission = mission.as_ref();
+        let in_mission = |fault: Fault| FileError::new(mission, fault);
+        let MissionFile {
+            mission: told,
+            notes: own,
+            ..
+        } = read_mission(mission)?;
+        let poses = planned_poses(&told, &crs, take_off, ground).map_err(in_mission)?;
+        if poses.is_empty() {
+            let what = "it has no photos to compare with";
+            let remedy = "give the mission of this flight";
+            return Err(in_mission(Fault::new(what, remedy)));
+        }
+        planned.extend(poses);
+        notes.extend(own);
     }
     let taken: Vec<Taken<'_>> = (parts.photos.iter())
         .map(|photo| Taken {
@@ -83,6 +89,7 @@ pub fn compare_flown(
         .collect();
     progress.stage("planned against flown");
     let flown = Flown::compare(&planned, &taken, &parts.surface, progress).map_err(in_flight)?;
+    notes.extend(heights_off(&planned, &flown, &crs, parts.unit));
     Ok(ComparedFlight {
         photos: parts
             .photos
@@ -95,4 +102,42 @@ pub fn compare_flown(
         flown,
         notes,
     })
+}
+
+/// Photos that are higher or lower than their plans by less, metres, may be so by the drone's own heights.
+const HEIGHT_OFF: f64 = 5.0;
+/// As many times as far as they are from each other: they are off alike.
+const ALIKE: f64 = 5.0;
+/// Within so many metres of the geoid's height above the ellipsoid it is that.
+const OF_GEOID: f64 = 3.0;
+
+/// That all photos are higher or lower than their plans by the same, in a sentence: heights that count from two datums, or a
+/// take-off elsewhere.
+fn heights_off(
+    planned: &[PlannedPose],
+    flown: &Flown,
+    crs: &Crs,
+    unit: LengthUnit,
+) -> Option<String> {
+    let residuals = flown.residuals.iter().flatten();
+    let mut heights: Vec<f64> = residuals.map(|own| own.offset.z * unit.metres()).collect();
+    let middle = median(&mut heights)?;
+    let mut apart: Vec<f64> = heights.iter().map(|own| (own - middle).abs()).collect();
+    if heights.len() < 3 || middle.abs() < HEIGHT_OFF.max(ALIKE * median(&mut apart)?) {
+        return None;
+    }
+    let place = crs.to_geographic(planned.first()?.pose.center)?;
+    let geoid = geoid_height(place.latitude, place.longitude);
+    let higher = if middle > 0.0 { "higher" } else { "lower" };
+    let why = match (middle.abs() - geoid.abs()).abs() < OF_GEOID {
+        true => format!(
+            "the geoid lies {:.1} m off the ellipsoid there, so the heights of photos and surface count from the one and the other: bring them to the same",
+            geoid.abs()
+        ),
+        false => "look whether it took off where the mission says, and whether the heights of photos and surface count from the same".to_owned(),
+    };
+    Some(format!(
+        "all photos are {:.1} m {higher} than planned: {why}",
+        middle.abs()
+    ))
 }

@@ -20,7 +20,7 @@ use crate::jobs::Progress;
 use crate::scale::ImageKind;
 use crate::world::WorldFrame;
 use crate::{OpenOptions, open_flight};
-use fragscale_core::plan::Height;
+use fragscale_core::plan::{Height, LostSignal};
 
 /// Reads any supported file or folder and says what it holds.
 ///
@@ -107,6 +107,7 @@ fn mission_info(file: &MissionFile) -> Value {
         "safe_height": mission.safe_height,
         "return_height": mission.return_height,
         "finish": mission.finish.in_words(),
+        "lost_signal": mission.lost_signal.map(LostSignal::in_words),
         "photos": mission.stops.iter().filter(|stop| stop.photo.is_some()).count(),
         "stops": stops.collect::<Vec<_>>(),
         "fences": fences.collect::<Vec<_>>(),

@@ -8,6 +8,7 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
+use super::patterns::STRAIGHT_DOWN;
 use super::terrain::Terrain;
 use super::{PlannedPhoto, Purpose};
 use crate::camera::Camera;
@@ -30,13 +31,22 @@ pub struct Cover {
     pub widest_gap: f64,
     /// Where its middle lies.
     pub gap_at: Option<DVec2>,
+    /// How much photos of the survey that look straight down share with the next where the ground of the area comes nearest to
+    /// them: their overlap is wished for at one height, and over what is higher each shows less. Below 0 where
+    /// they leave gaps there; `None` without such photos.
+    pub least_overlap: Option<f64>,
     /// Of each photo: the share of what it shows that others with its purpose show, too.
     pub shared: Vec<f64>,
 }
 
 impl Cover {
-    /// Of photos of one camera.
-    pub fn of(photos: &[PlannedPhoto], camera: &Camera, area: &Polygon, terrain: &Terrain) -> Self {
+    /// Of photos of one camera; those of a survey lie with this overlap, 0 to under 1, at their distance.
+    pub fn of(
+        (photos, survey_overlap): (&[PlannedPhoto], f64),
+        camera: &Camera,
+        area: &Polygon,
+        terrain: &Terrain,
+    ) -> Self {
         let raster = terrain.raster();
         let (columns, rows) = (raster.columns as usize, raster.rows as usize);
         let seen: Vec<Vec<usize>> = photos
@@ -79,6 +89,17 @@ impl Cover {
                     .count(),
             )
         });
+        // What a photo shows grows with its depth, and what lies between two does not.
+        let nearest = photos.iter().zip(&seen).filter_map(|(photo, seen)| {
+            if photo.purpose != Purpose::Survey || photo.tilt < STRAIGHT_DOWN {
+                return None;
+            }
+            let heights = seen.iter().filter(|place| inside[**place]);
+            let highest = heights.map(|place| terrain.heights()[*place]);
+            let depth = photo.pose.center.z - highest.reduce(f64::max)?;
+            Some(1.0 - (1.0 - survey_overlap) * photo.distance / depth.max(f64::MIN_POSITIVE))
+        });
+        let least_overlap = nearest.reduce(f64::min);
         let counts = match has(Purpose::Scale) {
             true => &for_scales,
             false => &of_survey,
@@ -97,6 +118,7 @@ impl Cover {
             off_surface: (1.0 - share(in_area)).max(0.0),
             widest_gap: 2.0 * deepest.sqrt() * raster.pixel,
             gap_at: (deepest > 0.0).then(|| raster.world_from_pixel(middle)),
+            least_overlap,
             shared,
         }
     }

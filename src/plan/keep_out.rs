@@ -63,6 +63,25 @@ impl<'a> KeepOut<'a> {
         (self.areas.iter()).any(|area| area.distance_to_leg(from, to) < self.distance)
     }
 
+    /// Whether an area lies, or comes nearer than the distance, between a leg and a place: on a straight way there from
+    /// anywhere on the leg.
+    pub(super) fn lies_between(&self, leg: [DVec2; 2], to: DVec2) -> bool {
+        let triangle = [leg[0], leg[1], to];
+        let sides = [0, 1, 2].map(|at| triangle[(at + 1) % 3] - triangle[at]);
+        // The same side of all three: an area that no side crosses is inside with all of it, or with nothing.
+        let is_inside = |place: DVec2| {
+            let turns = [0, 1, 2].map(|at| sides[at].perp_dot(place - triangle[at]));
+            turns.iter().all(|turn| *turn > 0.0) || turns.iter().all(|turn| *turn < 0.0)
+        };
+        self.crosses(leg[0], to)
+            || self.crosses(leg[1], to)
+            || (self.areas.iter()).any(|area| {
+                area.corners()
+                    .first()
+                    .is_some_and(|corner| is_inside(*corner))
+            })
+    }
+
     /// The shortest course from a place to another that keeps out: both, and the places between. `None` where there is
     /// none: one of them lies in an area, or areas surround it.
     pub(super) fn course(&self, from: DVec2, to: DVec2) -> Option<Vec<DVec2>> {

@@ -15,6 +15,7 @@
 //! steadiness  how well a drone holds its pose, and what that makes of the scale
 //! sun         where the sun stands, and what lies in shadow
 //! cover       how much photos share, and the widest gap that they leave
+//! home        the straight way home that the drone flies by itself
 //! way         the legs between photos, with which climbs; how long they take
 //! order       in which order photos are taken
 //! mission/    what a drone is told, and what came of it
@@ -30,6 +31,7 @@ mod area;
 mod cover;
 mod drones;
 mod forecast;
+mod home;
 mod keep_out;
 mod known;
 mod mission;
@@ -47,16 +49,18 @@ mod wish;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 pub use area::{lying, pile};
 pub use cover::Cover;
 pub use drones::Drone;
 pub use forecast::Forecast;
+pub use home::{homes_over_keep_out, lost_signal, return_height, set_height};
 pub use mission::{
-    Above, DroneCodes, Fence, Finish, Flown, Height, Mission, PayloadCodes, PhotoOf, PlannedPose,
-    Residual, Stop, TakeOff, Taken, Told, heading, is_over_ground, missions, planned_poses,
+    Above, DroneCodes, Fence, Finish, Flown, Height, LostSignal, Mission, PayloadCodes, PhotoOf,
+    PlannedPose, Residual, Stop, TakeOff, Taken, Told, heading, is_over_ground, missions,
+    planned_poses,
 };
 pub use photo::{PlannedPhoto, Purpose, Refused};
 pub use steadiness::{PoseErrors, Positioning};
@@ -64,7 +68,6 @@ pub use sun::{Shadows, Sun};
 pub use terrain::{GroundPlane, Terrain, ground_at};
 pub use way::{
     Flying, MOST_SPEED, Pace, USUAL_CLIMB, USUAL_DESCENT, USUAL_SETTLE, USUAL_SPEED, Way, WayPoint,
-    return_height, set_height,
 };
 pub use wish::{
     AskedPlan, Edit, Pattern, PhotoAt, Size, SurveyWish, USUAL_CLEARANCE, USUAL_OFF_NORMAL,
@@ -203,7 +206,7 @@ impl Plan {
                 own.foresee(photo, surface, &Progress::default())
             })
         })?;
-        let cover = Cover::of(&photos, camera, &area, &terrain);
+        let cover = Cover::of((&photos, wish.survey.overlap), camera, &area, &terrain);
         Ok(Self {
             photos,
             refused,
@@ -317,7 +320,12 @@ impl Plan {
 
     /// Behind a change of its photos.
     fn cover_again(&mut self) {
-        self.cover = Cover::of(&self.photos, &self.camera, &self.area, &self.terrain);
+        self.cover = Cover::of(
+            (&self.photos, self.wish.survey.overlap),
+            &self.camera,
+            &self.area,
+            &self.terrain,
+        );
     }
 
     /// A photo of a place that looks as another one of the plan, and is called like it.
@@ -472,6 +480,17 @@ fn are_near(keep_out: &[Polygon], surface: &Surface, distance: f64) -> Result<()
 /// What does not lie on a surface, or near it: its own coordinates are wrong, and the surface's tell how.
 fn elsewhere(what: &str, place: DVec2, surface: &Surface) -> Fault {
     let Bounds { min, max } = surface.bounds();
+    let [low, high] = [min, max].map(DVec3::truncate);
+    if place.cmpge(low).all() && place.cmple(high).all() {
+        let what = format!(
+            "{what}: at ({:.1}, {:.1}) it has a hole, or ends before, though its bounds reach farther",
+            place.x, place.y
+        );
+        return Fault::new(
+            what,
+            "give a place where it has points, or a surface that reaches there",
+        );
+    }
     let what = format!(
         "{what}: it lies around ({:.1}, {:.1}), the surface at x {:.1} to {:.1}, y {:.1} to {:.1}",
         place.x, place.y, min.x, max.x, min.y, max.y

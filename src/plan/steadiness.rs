@@ -25,6 +25,13 @@ pub struct PoseErrors {
     pub heading: f64,
 }
 
+impl PoseErrors {
+    /// How far the drone may be off its place along one axis: half of the 95 % interval, world units.
+    pub fn off_place(&self) -> f64 {
+        TO_95_PERCENT * self.level.max(self.upright)
+    }
+}
+
 /// By what a drone knows its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Positioning {

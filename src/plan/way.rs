@@ -228,25 +228,6 @@ impl Way {
     }
 }
 
-/// The height in the world from which the drone comes straight home from every photo, rising to it where it is, and keeps the
-/// clearance: never below the safe height of the ways. `None` without a way.
-pub fn return_height(plan: &Plan, ways: &[Way]) -> Option<f64> {
-    let take_off = ways.first()?.take_off.truncate();
-    let clearance = plan.wish.clearance;
-    let over = plan.photos.iter().filter_map(|photo| {
-        let from = photo.pose.center.truncate();
-        let ground = plan.terrain.highest_along(from, take_off, clearance);
-        Some(ground? + clearance)
-    });
-    let safe = ways.iter().map(|way| way.safe_height);
-    Some(over.chain(safe).fold(f64::MIN, f64::max))
-}
-
-/// A height to come home at as it is set at a drone: rounded up to a whole unit. A rounding error above a whole one is that one.
-pub fn set_height(height: f64) -> f64 {
-    (height - 1e-6).ceil()
-}
-
 /// Who flies the photos of a plan.
 struct Pilot<'a> {
     plan: &'a Plan,

@@ -71,3 +71,41 @@ fn a_mission_is_told_and_written_for_another() {
         WAYPOINTS
     );
 }
+
+/// DJI's file to DJI's file: what it does at the end and where the radio is lost stays, and is listed; for Litchi, whose files
+/// cannot say it, it is named.
+#[test]
+fn what_a_drone_does_by_itself_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let geojson = r#"{"type":"FeatureCollection","fragscale":"mission 1","name":"a","speed_m_per_s":3,"safe_height_m":20,"return_height_m":30,"finish":"FINISH","lost_signal":"LOST","drone":{"drone":77,"drone_sub":0,"payload":{"payload":66,"payload_sub":0,"position":0}},"features":[{"type":"Feature","geometry":{"type":"Point","coordinates":[7.0,50.0]},"properties":{"what":"stop","number":1,"height_m":12.0,"above":"take-off","heading_deg":10.0,"gimbal_pitch_deg":-60.0,"settle_s":3.0,"photo":true,"photo_name":"P001"}}]}"#;
+    for (finish, lost, listed) in [
+        ("land", "hover", ["lands", "hovers"]),
+        (
+            "first stop",
+            "land",
+            ["flies to the first stop and hovers", "lands"],
+        ),
+        ("return home", "go on", ["returns home", "goes on"]),
+    ] {
+        let text = geojson.replace("FINISH", finish).replace("LOST", lost);
+        fs::write(path("a.geojson"), text).unwrap();
+        for (from, to) in [("a.geojson", "a.kmz"), ("a.kmz", "b.kmz")] {
+            let (from, to) = (path(from), path(to));
+            let output = crate::common::fragscale(&["mission", &from, "--to", &to, "--force"]);
+            assert_eq!(output.status.code(), Some(0), "{output:?}");
+        }
+        let told = crate::common::stdout_of(&["mission", &path("b.kmz")]);
+        let [end, radio] = listed;
+        assert!(told.contains(&format!("at the end: {end}\n")), "{told}");
+        assert!(
+            told.contains(&format!("where the radio is lost: {radio}\n")),
+            "{told}"
+        );
+        let litchi = ["mission", &path("b.kmz"), "--to", &path("b.csv"), "--force"];
+        let notes = crate::common::fragscale(&litchi).stderr;
+        let notes = String::from_utf8_lossy(&notes).into_owned();
+        let named = format!("does where the radio is lost ({radio}): set it at the drone");
+        assert!(notes.contains(&named), "{notes}");
+    }
+}

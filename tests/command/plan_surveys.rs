@@ -78,11 +78,14 @@ fn all_formats_of_both_say_the_same() {
             assert_eq!(read["kind"], "mission");
             let (ours, theirs) = (seen(&first), seen(&read));
             assert_eq!(ours.len(), theirs.len(), "{mission}");
+            // ArduPilot keeps whole degrees of the gimbal's pitch.
+            let whole = mission.ends_with(".plan") || mission.ends_with(".waypoints");
+            let pitch = if whole { 0.5 + 1e-6 } else { 0.01 };
             for (ours, theirs) in ours.iter().zip(&theirs) {
                 for (name, most) in [
                     ("latitude", 1e-7),
                     ("longitude", 1e-7),
-                    ("gimbal_pitch", 0.01),
+                    ("gimbal_pitch", pitch),
                 ] {
                     let off = (number(ours, name) - number(theirs, name)).abs();
                     assert!(off <= most, "{mission} {name}: {off}");

@@ -63,7 +63,7 @@ impl State {
                 flight: &flight,
                 crs: crs.as_deref(),
             };
-            let compared = compare_flown(&path, of, take_off, progress)?;
+            let compared = compare_flown(&[&path], of, take_off, progress)?;
             Ok::<_, FileError>(FlownMission::of(&path, compared, &flight))
         };
         self.start(Task::FLOWN, work, |state, flown| match flown {

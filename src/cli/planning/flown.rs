@@ -20,9 +20,10 @@ use crate::opening::compare_flown;
 pub(in crate::cli) struct FlownArguments {
     #[command(flatten)]
     flight: FlightArguments,
-    /// The mission as it was planned: a file of any ground station that 'fragscale mission' reads.
-    #[arg(long, value_name = "FILE")]
-    mission: PathBuf,
+    /// The mission as it was planned: a file of any ground station that 'fragscale mission' reads. Of several batteries
+    /// once for each, in the order in which they were flown.
+    #[arg(long, value_name = "FILE", required = true)]
+    mission: Vec<PathBuf>,
     /// Where the drone took off, in the world and on the surface, if that is not where the mission says.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     take_off: Option<DVec2>,
@@ -40,7 +41,7 @@ pub(in crate::cli) fn flown(
     arguments: &FlownArguments,
     progress: &Progress,
 ) -> Result<Answer, String> {
-    let inputs = arguments.flight.files().chain([&arguments.mission]);
+    let inputs = arguments.flight.files().chain(&arguments.mission);
     let mut outputs = arguments.answer.outputs(inputs)?;
     let mut formats = Vec::new();
     for path in &arguments.figure {

@@ -97,6 +97,9 @@ fn told(mission: &Mission, format: &str) -> String {
     }
     let finish = mission.finish.in_words();
     let _ = writeln!(text, "at the end: {finish}");
+    if let Some(lost) = mission.lost_signal {
+        let _ = writeln!(text, "where the radio is lost: {}", lost.in_words());
+    }
     for ((stop, pitch), number) in mission.stops.iter().zip(mission.gimbal_pitches()).zip(1..) {
         let _ = write!(
             text,

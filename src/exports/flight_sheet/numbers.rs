@@ -3,11 +3,11 @@
 use glam::DVec3;
 
 use super::FlightSheet;
-use crate::flight_plan::{PlanReport, kinds_in_words, sun_in_words};
+use crate::flight_plan::{PlanReport, kinds_in_words, overlap_in_words, sun_in_words};
 use crate::geodesy::Crs;
 use crate::measured::percent;
 use crate::numbers::{four_digits, significant_digits};
-use fragscale_core::plan::{Size, Way, return_height, set_height};
+use fragscale_core::plan::{Size, Way, lost_signal, return_height, set_height};
 
 /// Names and what is said of them, in the order of the page.
 #[derive(Default)]
@@ -72,6 +72,9 @@ pub(super) fn numbers(sheet: &FlightSheet<'_>) -> Vec<(String, String)> {
             format!("{} of the area in 3 photos or more", percent(share)),
         );
     }
+    if let Some(words) = overlap_in_words(plan) {
+        said.say("Shared by the survey", words);
+    }
     if let Some(words) = sun_in_words(report) {
         said.say("Sun", words);
     }
@@ -122,6 +125,8 @@ fn say_ways(report: &PlanReport<'_>, first: &Way, said: &mut Said) {
     if let Some(height) = return_height_in_words(report) {
         said.say("Return home", format!("at least {height} above take-off"));
     }
+    let lost = lost_signal(report.plan, report.ways).in_words();
+    said.say("Radio lost", format!("the drone {lost}, by its mission"));
     if report.ways.len() == 1 {
         return;
     }

@@ -5,6 +5,7 @@ use super::numbers::return_height_in_words;
 use crate::flight_plan::{PlanReport, pan_in_words, rows};
 use crate::html_page::{Cell, NONE, names, table};
 use crate::numbers::significant_digits;
+use fragscale_core::plan::homes_over_keep_out;
 
 /// What the pilot looks at, in the order in which it is done.
 pub(super) fn checklist(sheet: &FlightSheet<'_>) -> Vec<String> {
@@ -28,9 +29,12 @@ pub(super) fn checklist(sheet: &FlightSheet<'_>) -> Vec<String> {
         None => list.push(said("The take-off is chosen and the plan made again with --take-off: without it there is no way, no safe height and no mission")),
     }
     if !report.plan.wish.keep_out.is_empty() {
-        list.push(said(
-            "Return-to-home flies straight, over the areas to keep out of, too: in need, bring the drone back by hand",
-        ));
+        let is_clear =
+            !report.ways.is_empty() && homes_over_keep_out(report.plan, report.ways) == 0;
+        list.push(said(match is_clear {
+            true => "Return-to-home flies straight: from every stop that keeps out of the areas to keep out of, from elsewhere it may not",
+            false => "Return-to-home flies straight, over the areas to keep out of, too, also with a low battery: in need, bring the drone back by hand, and before the battery is low; where the radio is lost it is to hover, which is set at the drone, too",
+        }));
     }
     list.push(match report.ways.len() {
         0 | 1 => said("Battery is full and warm; the way and a reserve are within what it lasts"),

@@ -141,6 +141,11 @@ impl MissionFormat {
         format!("{} {unit} at once", self.most())
     }
 
+    /// Whether its files say what the drone does where the radio is lost; KML is to look at alone.
+    pub(super) fn says_lost_signal(self) -> bool {
+        matches!(self, Self::DjiWpml | Self::GeoJson | Self::Kml)
+    }
+
     pub(super) fn has_fences(self) -> bool {
         matches!(self, Self::QGroundControl | Self::Kml | Self::GeoJson)
     }

@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use fragscale_core::plan::{Above, Finish, Height, Mission};
+use fragscale_core::plan::{Above, Finish, Height, LostSignal, Mission};
 
 use crate::fault::Fault;
 
@@ -18,6 +18,7 @@ struct Collection<'a> {
     safe_height_m: Option<f64>,
     return_height_m: Option<f64>,
     finish: &'static str,
+    lost_signal: Option<&'static str>,
     drone: Option<Drone>,
     features: Vec<Feature<'a>>,
 }
@@ -137,7 +138,14 @@ pub(super) fn bytes(mission: &Mission) -> Result<Vec<u8>, Fault> {
             Finish::ReturnHome => "return home",
             Finish::Hover => "hover",
             Finish::Land => "land",
+            Finish::FirstStop => "first stop",
         },
+        lost_signal: mission.lost_signal.map(|lost| match lost {
+            LostSignal::ReturnHome => "return home",
+            LostSignal::Hover => "hover",
+            LostSignal::Land => "land",
+            LostSignal::GoOn => "go on",
+        }),
         drone: mission.drone.map(|codes| Drone {
             drone: codes.drone,
             drone_sub: codes.drone_sub,

@@ -38,6 +38,7 @@ pub(super) fn bytes(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec<u8
         Finish::ReturnHome => "RTH",
         Finish::Hover => "None",
         Finish::Land => "Land",
+        Finish::FirstStop => "Back to 1st",
     };
     notes.push(format!(
         "in Litchi set the finish action to {finish}: its files do not say it"

@@ -8,20 +8,27 @@
 //!   the wait has to cover turn and gimbal.
 //! - Heights above take-off are of frame 3: they count from where the drone armed, not from the first
 //!   stop.
+//! - No parameter is NaN, MAVLink's word for "as it is": ArduPilot refuses a whole mission for one in any command but
+//!   those of places (`AP_Mission::sanity_check_params`: `MAV_MISSION_INVALID_PARAM3`), and Mission Planner's reader
+//!   passes over a line with one. Command 1000 has rates beside its angles: with both angles ArduPilot's
+//!   `start_command_do_gimbal_manager_pitchyaw` never looks at them, and 0 is at rest for PX4.
+//! - ArduPilot keeps the pitch of 1000 as an `int8_t` of degrees (`gimbal_manager_pitchyaw_Command`), cut towards 0: it is
+//!   rounded here, which is nearer, and said. Command 205 (DO_MOUNT_CONTROL) would keep fractions, but where the gimbal has no yaw
+//!   Copter takes it for a turn of the drone (`set_yaw_angle_offset`), which ends that of 115 on its way.
 
-use fragscale_core::plan::{Above, Finish, Height, Mission, Stop, TakeOff, set_height};
+use fragscale_core::plan::{Above, Finish, Height, LostSignal, Mission, Stop, TakeOff, set_height};
 
 use super::heights::metres_above;
 use crate::fault::Fault;
 
-/// One command; `None` is what the vehicle chooses.
+/// One command.
 pub(super) struct Command {
     /// `MAV_CMD`.
     pub(super) command: u32,
     /// `MAV_FRAME`.
     pub(super) frame: u32,
     /// Parameters 1 to 7.
-    pub(super) parameters: [Option<f64>; 7],
+    pub(super) parameters: [f64; 7],
 }
 
 const IN_MISSION: u32 = 2;
@@ -34,6 +41,9 @@ pub(super) const BESIDE_STOPS: usize = 4;
 /// by 60 degrees per second (ArduCopter's `AUTO_YAW_SLEW_RATE`), which for half a turn is 3 s. Gimbals are faster.
 const SHORT_WAIT: f64 = 3.0;
 
+/// A pitch that is nearer to a whole degree is that.
+const NOT_WHOLE: f64 = 1e-3;
+
 /// How many commands a stop has.
 pub(super) fn commands_at(stop: &Stop) -> usize {
     1 + usize::from(stop.heading.is_some())
@@ -43,7 +53,6 @@ pub(super) fn commands_at(stop: &Stop) -> usize {
 }
 
 fn other(command: u32, parameters: [f64; 7]) -> Command {
-    let parameters = parameters.map(Some);
     Command {
         command,
         frame: IN_MISSION,
@@ -95,25 +104,23 @@ pub(super) fn commands(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec
             set_height(height)
         ));
     }
+    if mission.lost_signal == Some(LostSignal::Hover) {
+        notes.push(
+            "ArduPilot comes straight home where the radio is lost, unless FS_THR_ENABLE says otherwise: 7 stays (Brake or Land), 5 comes back as it flew (SmartRTL or Land)"
+                .to_owned(),
+        );
+    }
     let mut commands = Vec::new();
     match mission.safe_height {
         Some(height) => {
             let place = mission
                 .take_off
                 .map_or([0.0; 2], |at| [at.latitude, at.longitude]);
-            let zero = Some(0.0);
+            // Copter takes off without turning, whatever the yaw.
             commands.push(Command {
                 command: 22,
                 frame: ABOVE_HOME,
-                parameters: [
-                    zero,
-                    zero,
-                    zero,
-                    None,
-                    Some(place[0]),
-                    Some(place[1]),
-                    Some(height),
-                ],
+                parameters: [0.0, 0.0, 0.0, 0.0, place[0], place[1], height],
             });
         }
         None => notes.push(
@@ -135,19 +142,12 @@ pub(super) fn commands(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec
                 "heights above ground need terrain data on the drone (TERRAIN_ENABLE)".to_owned(),
             );
         }
-        let (zero, place) = (Some(0.0), [stop.latitude, stop.longitude].map(Some));
+        // Of a stop without a heading 0: Copter ignores it.
+        let yaw = stop.heading.unwrap_or(0.0);
         commands.push(Command {
             command: 16,
             frame,
-            parameters: [
-                zero,
-                zero,
-                zero,
-                stop.heading,
-                place[0],
-                place[1],
-                Some(metres),
-            ],
+            parameters: [0.0, 0.0, 0.0, yaw, stop.latitude, stop.longitude, metres],
         });
         aim_and_shoot(stop, &mut commands, notes);
     }
@@ -157,9 +157,12 @@ pub(super) fn commands(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec
         Finish::Land => commands.push(Command {
             command: 21,
             frame: ABOVE_HOME,
-            parameters: [0.0; 7].map(Some),
+            parameters: [0.0; 7],
         }),
         Finish::Hover => {}
+        Finish::FirstStop => notes.push(
+            "the file does not say that the drone flies to the first stop at the end: it hovers at the last".to_owned(),
+        ),
     }
     Ok(commands)
 }
@@ -171,13 +174,16 @@ fn aim_and_shoot(stop: &Stop, commands: &mut Vec<Command>, notes: &mut Vec<Strin
         commands.push(other(115, [heading, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]));
     }
     if let Some(pitch) = stop.gimbal_pitch {
+        // Of a tilt under half a degree 0, not -0.
+        let whole = pitch.round() + 0.0;
+        if (whole - pitch).abs() > NOT_WHOLE {
+            notes.push(
+                "ArduPilot keeps the gimbal's pitch in whole degrees: it is rounded, by up to 0.5 degrees"
+                    .to_owned(),
+            );
+        }
         // Roll and pitch stay with the horizon (4 + 8), the yaw follows the nose.
-        let zero = Some(0.0);
-        commands.push(Command {
-            command: 1000,
-            frame: IN_MISSION,
-            parameters: [Some(pitch), zero, None, None, Some(12.0), zero, zero],
-        });
+        commands.push(other(1000, [whole, 0.0, 0.0, 0.0, 12.0, 0.0, 0.0]));
     }
     if stop.settle > 0.0 {
         commands.push(other(93, [stop.settle, -1.0, -1.0, -1.0, 0.0, 0.0, 0.0]));

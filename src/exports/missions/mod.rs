@@ -97,6 +97,12 @@ pub fn mission_files(mission: &Mission, format: MissionFormat) -> Result<Mission
             format.file_in_words()
         ));
     }
+    if let (Some(lost), false) = (mission.lost_signal, format.says_lost_signal()) {
+        notes.push(format!(
+            "the file does not say what the drone does where the radio is lost ({}): set it at the drone",
+            lost.in_words()
+        ));
+    }
     let count = parts.len();
     let mut files = Vec::new();
     for (part, number) in parts.iter().zip(1..) {

@@ -59,7 +59,7 @@ struct Item {
     command: u32,
     do_jump_id: usize,
     frame: u32,
-    params: [Option<f64>; 7],
+    params: [f64; 7],
     r#type: &'static str,
     #[serde(flatten)]
     altitude: Option<Altitude>,
@@ -97,7 +97,7 @@ pub(super) fn bytes(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec<u8
         frame: command.frame,
         altitude: altitude_mode(&command).map(|mode| Altitude {
             above_terrain: None,
-            altitude: command.parameters[6].unwrap_or(0.0),
+            altitude: command.parameters[6],
             altitude_mode: mode,
         }),
         params: command.parameters,

@@ -27,11 +27,10 @@ pub(super) fn bytes(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec<u8
         let _ = write!(text, "{index}\t0\t{}\t{}", command.frame, command.command);
         for (parameter, position) in command.parameters.iter().zip(1..) {
             text.push('\t');
-            match (parameter, position) {
-                (None, _) => text += "nan",
-                (Some(number), 5 | 6) => text += &degrees(*number),
-                (Some(number), _) => text += &metres(*number),
-            }
+            text += &match position {
+                5 | 6 => degrees(*parameter),
+                _ => metres(*parameter),
+            };
         }
         text += "\t1\n";
     }

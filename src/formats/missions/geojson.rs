@@ -5,7 +5,8 @@
 use serde::Deserialize;
 
 use fragscale_core::plan::{
-    Above, DroneCodes, Fence, Finish, Height, Mission, PayloadCodes, PhotoOf, Stop, TakeOff,
+    Above, DroneCodes, Fence, Finish, Height, LostSignal, Mission, PayloadCodes, PhotoOf, Stop,
+    TakeOff,
 };
 
 use super::MissionFile;
@@ -35,6 +36,7 @@ struct Collection {
     safe_height_m: Option<f64>,
     return_height_m: Option<f64>,
     finish: String,
+    lost_signal: Option<String>,
     drone: Option<Drone>,
     features: Vec<Feature>,
 }
@@ -94,9 +96,22 @@ pub(super) fn read(text: &str) -> Result<MissionFile, Fault> {
         "return home" => Finish::ReturnHome,
         "hover" => Finish::Hover,
         "land" => Finish::Land,
+        "first stop" => Finish::FirstStop,
         other => {
             let what = format!("\"finish\" is \"{}\"", shown(other));
-            return Err(Fault::new(what, "write return home, hover or land"));
+            let remedy = "write return home, hover, land or first stop";
+            return Err(Fault::new(what, remedy));
+        }
+    };
+    let lost_signal = match file.lost_signal.as_deref() {
+        None => None,
+        Some("return home") => Some(LostSignal::ReturnHome),
+        Some("hover") => Some(LostSignal::Hover),
+        Some("land") => Some(LostSignal::Land),
+        Some("go on") => Some(LostSignal::GoOn),
+        Some(other) => {
+            let what = format!("\"lost_signal\" is \"{}\"", shown(other));
+            return Err(Fault::new(what, "write return home, hover, land or go on"));
         }
     };
     let drone = file.drone.map(|codes| DroneCodes {
@@ -115,6 +130,7 @@ pub(super) fn read(text: &str) -> Result<MissionFile, Fault> {
         safe_height: file.safe_height_m,
         return_height: file.return_height_m,
         finish,
+        lost_signal,
         ..Mission::default()
     };
     let mut notes = Notes::default();

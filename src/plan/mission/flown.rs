@@ -1,40 +1,21 @@
 //! Planned against flown: where each planned photo was really taken, and which were not.
 //!
-//! A planned photo is the photo of its name, where all planned photos have one of theirs; else photos are given out by
-//! distance, the nearest pair first, and none that is farther from its plan than half the way to what it was to show.
+//! `paired` says which photo is which planned one: none that is farther from its plan than half the way to what it was to show,
+//! but for what all photos are off alike.
 
 use std::collections::HashSet;
 
 use glam::{DVec2, DVec3};
 
+use super::paired::{PlannedPose, Taken, pairs};
 use super::{Above, Mission, Stop};
-use crate::camera::{Camera, Pose};
+use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::geodesy::{Crs, Geographic};
 use crate::jobs::Progress;
 use crate::plan::Purpose;
 use crate::scale::{FieldGrid, ImageKind, ScaleField};
 use crate::surface::Surface;
-
-/// A photo as it was planned.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlannedPose {
-    /// Its name in the mission; where it has none, that of its number as a plan has it.
-    pub name: String,
-    /// In the world.
-    pub pose: Pose,
-}
-
-/// A photo that was taken.
-#[derive(Debug, Clone, Copy)]
-pub struct Taken<'a> {
-    /// The name of its file.
-    pub name: &'a str,
-    /// In the world.
-    pub pose: &'a Pose,
-    /// With what.
-    pub camera: &'a Camera,
-}
 
 /// How far a photo is from its plan: flown less planned.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -172,7 +153,11 @@ impl Flown {
                 field.map_err(|error| Fault::new(error.to_string(), "check the surface file"))?,
             );
         }
-        let chosen = chosen(planned, taken, &fields);
+        let farthest = fields.iter().map(|field| {
+            let depth = field.as_ref().and_then(middle_depth)?;
+            Some(depth / 2.0)
+        });
+        let chosen = pairs(planned, taken, &farthest.collect::<Vec<_>>());
         let residuals: Vec<Option<Residual>> = (planned.iter().zip(&fields).zip(&chosen))
             .map(|((plan, field), chosen)| {
                 let photo = (*chosen)?;
@@ -187,51 +172,6 @@ impl Flown {
                 .collect(),
         })
     }
-}
-
-/// Which photo each planned one is.
-fn chosen(
-    planned: &[PlannedPose],
-    taken: &[Taken<'_>],
-    fields: &[Option<ScaleField>],
-) -> Vec<Option<usize>> {
-    let stem = |name: &str| {
-        name.rsplit_once('.')
-            .map_or(name, |(stem, _)| stem)
-            .to_lowercase()
-    };
-    let named = planned.iter().map(|plan| {
-        let name = stem(&plan.name);
-        taken.iter().position(|taken| stem(taken.name) == name)
-    });
-    let named: Vec<Option<usize>> = named.collect();
-    let different: HashSet<usize> = named.iter().copied().flatten().collect();
-    if !planned.is_empty() && different.len() == planned.len() {
-        return named;
-    }
-    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
-    for (number, (plan, field)) in planned.iter().zip(fields).enumerate() {
-        let most = field
-            .as_ref()
-            .and_then(middle_depth)
-            .map_or(f64::MAX, |depth| depth / 2.0);
-        for (photo, taken) in taken.iter().enumerate() {
-            let distance = plan.pose.center.distance(taken.pose.center);
-            if distance <= most {
-                pairs.push((distance, number, photo));
-            }
-        }
-    }
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let mut chosen = vec![None; planned.len()];
-    let mut used = vec![false; taken.len()];
-    for (_, number, photo) in pairs {
-        if chosen[number].is_none() && !used[photo] {
-            chosen[number] = Some(photo);
-            used[photo] = true;
-        }
-    }
-    chosen
 }
 
 /// The depth of what a photo's middle shows.
@@ -279,7 +219,7 @@ fn tilt_pan(pose: &Pose) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::Distortion;
+    use crate::camera::{Camera, Distortion};
     use crate::surface::Cloud;
 
     fn camera() -> Camera {

@@ -2,14 +2,20 @@
 //! each in its own way; `formats::missions` reads them, `exports::missions` writes them.
 //!
 //! ```text
-//! told   the ways of a plan as missions, in degrees and metres above take-off
-//! flown  planned against flown
+//! by_itself  what the drone does behind the last stop, and where the radio is lost
+//! told       the ways of a plan as missions, in degrees and metres above take-off
+//! flown      planned against flown
+//! paired     which photo is which planned one
 //! ```
 
+mod by_itself;
 mod flown;
+mod paired;
 mod told;
 
-pub use flown::{Flown, PlannedPose, Residual, Taken, planned_poses};
+pub use by_itself::{Finish, LostSignal};
+pub use flown::{Flown, Residual, planned_poses};
+pub use paired::{PlannedPose, Taken};
 #[cfg(test)]
 pub(super) use told::true_heading;
 pub use told::{Told, is_over_ground, missions};
@@ -41,6 +47,8 @@ pub struct Mission {
     pub return_height: Option<f64>,
     /// What happens behind the last stop.
     pub finish: Finish,
+    /// What the drone does where the radio is lost; `None` where it is left to its settings.
+    pub lost_signal: Option<LostSignal>,
     /// In the order in which they are flown.
     pub stops: Vec<Stop>,
     /// Polygons that the drone stays in or out of.
@@ -78,29 +86,6 @@ pub struct TakeOff {
     pub longitude: f64,
     /// Its elevation, where it is known: never above take-off or ground.
     pub elevation: Option<Height>,
-}
-
-/// What happens behind the last stop.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Finish {
-    /// Back to the place of take-off, and land.
-    ReturnHome,
-    /// Stay at the last stop, until somebody takes over.
-    #[default]
-    Hover,
-    /// Land below the last stop.
-    Land,
-}
-
-impl Finish {
-    /// In words that follow "at the end:".
-    pub fn in_words(self) -> &'static str {
-        match self {
-            Self::ReturnHome => "returns home",
-            Self::Hover => "hovers",
-            Self::Land => "lands",
-        }
-    }
 }
 
 /// A place where the drone stops.

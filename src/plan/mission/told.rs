@@ -5,10 +5,12 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{DroneCodes, Fence, Finish, Height, Mission, PhotoOf, Stop, TakeOff, heading};
+use super::{
+    DroneCodes, Fence, Finish, Height, LostSignal, Mission, PhotoOf, Stop, TakeOff, heading,
+};
 use crate::fault::Fault;
 use crate::geodesy::{Crs, CrsKind, Geographic};
-use crate::plan::{Plan, Way, return_height};
+use crate::plan::{Plan, Way, lost_signal, return_height};
 use crate::units::LengthUnit;
 
 /// Units that differ by less are one: feet and US survey feet differ by 2e-6, metres at UTM's coordinates.
@@ -68,7 +70,7 @@ pub fn missions(
 ) -> Result<Vec<(String, Mission)>, Fault> {
     is_over_ground(told.unit, crs)?;
     // Of all photos: the pilot sets one, whatever battery is flown.
-    let return_height = return_height(plan, ways);
+    let home = (return_height(plan, ways), lost_signal(plan, ways));
     let numbered = ways.iter().zip(1..).map(|(way, number)| {
         let battery = match ways.len() {
             0 | 1 => String::new(),
@@ -77,7 +79,7 @@ pub fn missions(
         let name = format!("{}{battery}", told.name);
         let mission = mission(
             plan,
-            (way, return_height),
+            (way, home),
             crs,
             Told {
                 name,
@@ -91,7 +93,7 @@ pub fn missions(
 
 fn mission(
     plan: &Plan,
-    (way, return_height): (&Way, Option<f64>),
+    (way, (return_height, lost_signal)): (&Way, (Option<f64>, LostSignal)),
     crs: &Crs,
     told: Told,
 ) -> Result<Mission, Fault> {
@@ -142,6 +144,7 @@ fn mission(
         safe_height: Some(above(way.safe_height)),
         return_height: return_height.map(above),
         finish: Finish::ReturnHome,
+        lost_signal: Some(lost_signal),
         stops,
         fences: fences.collect::<Result<_, Fault>>()?,
     };

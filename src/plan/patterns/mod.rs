@@ -39,7 +39,7 @@ pub(super) use ring::{ASLANT, TURN};
 use strips::{Strips, evenly, range_of};
 
 /// The tilt of a survey's rows.
-const STRAIGHT_DOWN: f64 = 90.0;
+pub(in crate::plan) const STRAIGHT_DOWN: f64 = 90.0;
 /// The most photos: more is a mistake of units.
 pub(in crate::plan) const MOST: usize = 20_000;
 

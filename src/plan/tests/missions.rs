@@ -70,6 +70,41 @@ fn the_way_home_is_over_all_that_stands_there() {
     assert!((wanted..wanted + 0.5).contains(&high), "{high} {wanted}");
 }
 
+/// An area to keep out of between the photos and home: the way goes around it, the straight way home would not, and the drone is
+/// told to hover where the radio is lost. Of a take-off on the other side nothing lies between.
+#[test]
+fn a_lost_radio_does_not_lead_over_what_is_kept_out_of() {
+    let surface = surface(|_| 100.0);
+    let mut wish = wish(Pattern::Slope);
+    let corner = |x: f64, y: f64| DVec2::new(500_000.0 + x, 5_000_000.0 + y);
+    let area = [(-30.0, -50.0), (30.0, -50.0), (30.0, -35.0), (-30.0, -35.0)];
+    wish.keep_out = vec![Polygon::new(&area.map(|(x, y)| corner(x, y))).unwrap()];
+    let plan = plan(&surface, 20.0, wish);
+    let crs = Crs::understand("EPSG:32632").unwrap();
+    for (y, crosses) in [(-80.0, true), (80.0, false)] {
+        let ways = ways((&plan, &surface), corner(0.0, y), None).unwrap();
+        let home = ways[0].take_off.truncate();
+        // Straight lines from the stops by hand, for the area lies along x: which pass y = -35 nearer to it than the clearance.
+        let by_hand = ways[0].points.iter().filter(|point| {
+            let from = point.place.truncate();
+            let share = (4_999_965.0 - from.y) / (home.y - from.y);
+            let x = from.x + share * (home.x - from.x) - 500_000.0;
+            (0.0..=1.0).contains(&share) && x.abs() < 30.0
+        });
+        let least = by_hand.count();
+        let found = homes_over_keep_out(&plan, &ways);
+        assert!(found >= least && (least > 0) == crosses && (found > 0) == crosses);
+        let (_, mission) = missions(&plan, &ways, &crs, &told(LengthUnit::Metre))
+            .unwrap()
+            .remove(0);
+        let wanted = match crosses {
+            true => LostSignal::Hover,
+            false => LostSignal::ReturnHome,
+        };
+        assert_eq!(mission.lost_signal, Some(wanted));
+    }
+}
+
 /// Over a surface in US survey feet a mission's heights are metres.
 #[test]
 fn a_mission_over_feet_is_told_in_metres() {

@@ -1,5 +1,6 @@
 //! Plans over surfaces whose answers are known.
 
+mod flown;
 mod legs;
 mod missions;
 mod random_surfaces;

@@ -36,7 +36,12 @@ fn the_covered_share_is_that_of_places() {
     for half in [5.3, 8.9, 13.1, 21.7] {
         let plan = plan(&surface, half, wish(Pattern::Slope));
         let photos = &plan.photos[1..];
-        let cover = Cover::of(photos, &plan.camera, &plan.area, &plan.terrain);
+        let cover = Cover::of(
+            (photos, plan.wish.survey.overlap),
+            &plan.camera,
+            &plan.area,
+            &plan.terrain,
+        );
         let places = (0..200 * 200).map(|i| {
             let at = DVec2::new(f64::from(i % 200), f64::from(i / 200)) + 0.5;
             let place = at * (half / 100.0) - half + DVec2::new(500_000.0, 5_000_000.0);
@@ -133,6 +138,30 @@ fn a_ring_looks_into_the_area_from_all_sides() {
             assert!(shared > overlap - 1e-3, "{shared}");
         }
     }
+}
+
+/// Photos with 25 px/m of 500 px focal length look down from 20 above the mean height, with 70 % overlap there: over a heap
+/// that is 8 higher they see 12/20 of that, and share 1 - 0.3 * 20/12 = 50 %.
+#[test]
+fn a_survey_shares_less_over_what_is_higher() {
+    let high = |place: DVec2| if place.x.abs() < 10.0 { 8.0 } else { 0.0 };
+    let surface = surface(high);
+    let wish = survey(Pattern::Survey, |survey| survey.ring = false);
+    let plan = plan(&surface, 40.0, wish.clone());
+    let mean = plan.photos[0].pose.center.z - 20.0;
+    assert!((1.0..3.0).contains(&mean), "{mean}");
+    let expected = 1.0 - 0.3 * 20.0 / (12.0 + mean);
+    let least = plan.cover.least_overlap.unwrap();
+    assert!((least - expected).abs() < 1e-3, "{least} {expected}");
+    // Photos for scales alone are of no survey.
+    let scales = Wish {
+        pattern: Pattern::Slope,
+        ..wish
+    };
+    assert_eq!(
+        super::plan(&surface, 40.0, scales).cover.least_overlap,
+        None
+    );
 }
 
 /// Both in one plan: the photos for scales are those of the pattern alone, so are those of the survey; gaps and overlap are

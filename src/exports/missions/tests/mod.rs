@@ -5,7 +5,8 @@ mod traps;
 mod writing;
 
 use fragscale_core::plan::{
-    Above, DroneCodes, Fence, Finish, Height, Mission, PayloadCodes, PhotoOf, Stop, TakeOff,
+    Above, DroneCodes, Fence, Finish, Height, LostSignal, Mission, PayloadCodes, PhotoOf, Stop,
+    TakeOff,
 };
 
 use super::*;
@@ -38,6 +39,7 @@ fn mission() -> Mission {
         safe_height: Some(20.0),
         return_height: Some(33.0),
         finish: Finish::ReturnHome,
+        lost_signal: Some(LostSignal::ReturnHome),
         stops: vec![
             stop(50.0001, 12.34, 37.4, -62.7, Some("P001")),
             Stop {

@@ -65,7 +65,13 @@ fn copter_turns_by_a_command() {
         lines[4][2..12],
         ["2", "115", "37.4", "0", "0", "0", "0", "0", "0", "1"]
     );
-    assert_eq!(lines[5][3..9], ["1000", "-62.7", "0", "nan", "nan", "12"]);
+    // ArduPilot keeps whole degrees (int8_t), and would cut -62.7 to -62.
+    assert_eq!(lines[5][3..9], ["1000", "-63", "0", "0", "0", "12"]);
+    let rounded = "keeps the gimbal's pitch in whole degrees";
+    assert!(notes(&mission(), MissionFormat::Waypoints).contains(rounded));
+    let mut straight = mission();
+    straight.stops[0].gimbal_pitch = Some(-63.0);
+    assert!(!notes(&straight, MissionFormat::QGroundControl).contains(rounded));
     assert_eq!(lines[11][3..5], ["1000", "-90"]);
     assert_eq!(lines[7][3..7], ["2000", "0", "0", "1"]);
     assert!(notes(&mission(), MissionFormat::Waypoints).contains("PX4 does not take"));
@@ -74,6 +80,31 @@ fn copter_turns_by_a_command() {
     hasty.stops[0].settle = 2.9;
     assert!(notes(&hasty, MissionFormat::Waypoints).contains("ArduPilot waits for no gimbal"));
     assert!(!notes(&mission(), MissionFormat::Waypoints).contains("waits for no gimbal"));
+}
+
+/// ArduPilot's `AP_Mission::sanity_check_params` takes NaN for the yaw of commands with a place alone and refuses the
+/// mission for any other; Mission Planner's reader passes over the line. So there is none, in either file.
+#[test]
+fn no_parameter_is_left_to_the_drone() {
+    let mut bare = mission();
+    bare.stops[0].heading = None;
+    for line in lines(&bare) {
+        assert!(
+            line[4..11]
+                .iter()
+                .all(|number| number.parse::<f64>().unwrap().is_finite()),
+            "{line:?}"
+        );
+    }
+    let plan: serde_json::Value =
+        serde_json::from_slice(&file(&bare, MissionFormat::QGroundControl)).unwrap();
+    for item in plan["mission"]["items"].as_array().unwrap() {
+        let parameters = item["params"].as_array().unwrap();
+        assert!(
+            parameters.iter().all(serde_json::Value::is_number),
+            "{item}"
+        );
+    }
 }
 
 /// Home is line 0, is counted, and is where the drone takes off and not the first stop.
@@ -89,7 +120,7 @@ fn heights_count_from_the_take_off() {
     );
     assert_eq!(
         lines[1][2..],
-        ["3", "22", "0", "0", "0", "nan", "50", "7", "20", "1"]
+        ["3", "22", "0", "0", "0", "0", "50", "7", "20", "1"]
     );
     // Frame 3, latitude, longitude, metres above home: below it, too.
     assert_eq!(
@@ -119,6 +150,60 @@ fn heights_count_from_the_take_off() {
     assert_eq!(numbers[..2], ["38.628155", "-90.220845"]);
     let elevation: f64 = numbers[2].parse().unwrap();
     assert!((elevation - 128.372).abs() < 2e-3, "{point}");
+}
+
+/// What the drone does where the radio is lost is in DJI's words (Cloud API, "waylines.wpml": `exitOnRCLost`,
+/// `executeRCLostAction`), and of files that cannot say it the pilot is told.
+#[test]
+fn a_lost_radio_does_what_was_asked_for() {
+    for (lost, exit, action) in [
+        (LostSignal::ReturnHome, "executeLostAction", "goBack"),
+        (LostSignal::Hover, "executeLostAction", "hover"),
+        (LostSignal::Land, "executeLostAction", "landing"),
+        (LostSignal::GoOn, "goContinue", "goBack"),
+    ] {
+        let mut asked = mission();
+        asked.lost_signal = Some(lost);
+        for name in ["wpmz/waylines.wpml", "wpmz/template.kml"] {
+            let xml = unzipped(file(&asked, MissionFormat::DjiWpml), name);
+            assert!(
+                xml.contains(&format!("<wpml:exitOnRCLost>{exit}</")),
+                "{xml}"
+            );
+            assert!(xml.contains(&format!("<wpml:executeRCLostAction>{action}</")));
+        }
+        let unsaid = "does not say what the drone does where the radio is lost";
+        assert!(notes(&asked, MissionFormat::Litchi).contains(unsaid));
+        assert!(!notes(&asked, MissionFormat::GeoJson).contains(unsaid));
+    }
+    // Of missions that do not say it: not straight over a fence.
+    let mut silent = mission();
+    silent.lost_signal = None;
+    assert!(text_of_dji(&silent).contains("executeRCLostAction>hover<"));
+    assert!(
+        notes(&silent, MissionFormat::DjiWpml)
+            .contains("where the radio is lost: in DJI's file it hovers")
+    );
+    silent.fences.clear();
+    assert!(text_of_dji(&silent).contains("executeRCLostAction>goBack<"));
+}
+
+/// DJI's docks take 8 m and more; a lower height to climb to is raised, and said.
+#[test]
+fn a_dock_climbs_at_least_eight_metres() {
+    let mut docked = mission();
+    docked.safe_height = Some(6.5);
+    assert!(text_of_dji(&docked).contains("takeOffSecurityHeight>6.5<"));
+    docked.drone = Some(DroneCodes {
+        drone: 91,
+        ..mavic_3e()
+    });
+    assert!(text_of_dji(&docked).contains("takeOffSecurityHeight>8<"));
+    assert!(notes(&docked, MissionFormat::DjiWpml).contains("climbs to 8 m first at least"));
+}
+
+fn text_of_dji(mission: &Mission) -> String {
+    unzipped(file(mission, MissionFormat::DjiWpml), "wpmz/waylines.wpml")
 }
 
 #[test]

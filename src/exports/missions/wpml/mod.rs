@@ -16,7 +16,7 @@ use std::io::{Cursor, Write};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use fragscale_core::plan::{Above, DroneCodes, Finish, Mission, set_height};
+use fragscale_core::plan::{Above, DroneCodes, Finish, LostSignal, Mission, set_height};
 
 use self::stop::{Placed, actions, heading, point, position, suffix};
 use super::format::no_drone;
@@ -32,6 +32,10 @@ const NAMESPACES: &str =
 
 /// `takeOffSecurityHeight` of a remote controller, in metres above take-off.
 const SAFE_HEIGHTS: (f64, f64) = (1.2, 1500.0);
+
+/// The least of a dock, in metres: those of the Matrice 3D and 3TD (`droneEnumValue` 91), which fly from one alone.
+const LEAST_OF_DOCK: f64 = 8.0;
+const FROM_DOCK: u32 = 91;
 
 /// `globalTransitionalSpeed`, in m/s.
 const FASTEST_TRANSIT: f64 = 15.0;
@@ -67,6 +71,7 @@ struct Common<'a> {
     safe_height: f64,
     /// To come home at, where the radio is lost, too.
     return_height: f64,
+    lost_signal: LostSignal,
     is_relative: bool,
 }
 
@@ -139,6 +144,15 @@ fn common<'a>(mission: &'a Mission, notes: &mut Vec<String>) -> Result<Common<'a
         );
         return Err(lacks(&what, "give another"));
     }
+    let is_low = codes.drone == FROM_DOCK && safe_height < LEAST_OF_DOCK;
+    if is_low {
+        notes.push(format!(
+            "a dock's drone climbs to {LEAST_OF_DOCK} m first at least: the file has that for {} m",
+            decimal(safe_height, 2)
+        ));
+    }
+    // Higher is farther from all that stands there.
+    let safe_height = if is_low { LEAST_OF_DOCK } else { safe_height };
     let return_height = match mission.return_height {
         // As the pilot's sheet says it: a whole metre, and none below what is climbed to first.
         Some(height) => set_height(height.max(safe_height)),
@@ -156,6 +170,19 @@ fn common<'a>(mission: &'a Mission, notes: &mut Vec<String>) -> Result<Common<'a
         );
         return Err(lacks(&what, "take off elsewhere"));
     }
+    let lost_signal = mission.lost_signal.unwrap_or_else(|| {
+        // It would fly straight over what is fenced off.
+        let keeps_out = mission.fences.iter().any(|fence| !fence.keep_in);
+        let usual = match keeps_out {
+            true => LostSignal::Hover,
+            false => LostSignal::ReturnHome,
+        };
+        notes.push(format!(
+            "nobody says what the drone does where the radio is lost: in DJI's file it {}",
+            usual.in_words()
+        ));
+        usual
+    });
     let known = DRONES
         .iter()
         .find(|(drone, sub, _)| (*drone, *sub) == (codes.drone, codes.drone_sub));
@@ -184,6 +211,7 @@ fn common<'a>(mission: &'a Mission, notes: &mut Vec<String>) -> Result<Common<'a
         speed,
         safe_height,
         return_height,
+        lost_signal,
         is_relative: has(Above::TakeOff),
     })
 }
@@ -307,10 +335,18 @@ fn config(xml: &mut Xml, common: &Common<'_>, is_flown: bool) {
             Finish::ReturnHome => "goHome",
             Finish::Hover => "noAction",
             Finish::Land => "autoLand",
+            Finish::FirstStop => "gotoFirstWaypoint",
         };
         xml.leaf("wpml:finishAction", finish);
-        xml.leaf("wpml:exitOnRCLost", "executeLostAction");
-        xml.leaf("wpml:executeRCLostAction", "goBack");
+        let (exit, action) = match common.lost_signal {
+            LostSignal::ReturnHome => ("executeLostAction", "goBack"),
+            LostSignal::Hover => ("executeLostAction", "hover"),
+            LostSignal::Land => ("executeLostAction", "landing"),
+            // The action is asked for nevertheless.
+            LostSignal::GoOn => ("goContinue", "goBack"),
+        };
+        xml.leaf("wpml:exitOnRCLost", exit);
+        xml.leaf("wpml:executeRCLostAction", action);
         xml.leaf("wpml:takeOffSecurityHeight", metres(common.safe_height));
         if let Some(take_off) = common.mission.take_off {
             let (latitude, longitude) = (take_off.latitude, take_off.longitude);

@@ -16,7 +16,9 @@ use std::path::Path;
 use roxmltree::{Document, Node};
 use zip::ZipArchive;
 
-use fragscale_core::plan::{Above, DroneCodes, Finish, Height, Mission, PayloadCodes, TakeOff};
+use fragscale_core::plan::{
+    Above, DroneCodes, Finish, Height, LostSignal, Mission, PayloadCodes, TakeOff,
+};
 
 use self::folder::add_folder;
 use super::route::Route;
@@ -193,11 +195,30 @@ fn of_config(config: Node<'_, '_>, notes: &mut Notes) -> Result<Mission, Fault> 
     let finish = match child(config, "finishAction").map(text) {
         Some("goHome") => Finish::ReturnHome,
         Some("autoLand") => Finish::Land,
-        Some("gotoFirstWaypoint") => {
-            notes.say("at the end it flies to the first waypoint and hovers: read as hovering");
+        Some("gotoFirstWaypoint") => Finish::FirstStop,
+        None | Some("noAction") => Finish::Hover,
+        Some(other) => {
+            let other = shown(other);
+            notes.say(format!(
+                "what it does at the end ({other}) is not known: read as hovering"
+            ));
             Finish::Hover
         }
-        _ => Finish::Hover,
+    };
+    let says = |name: &str| child(config, name).map(text);
+    let lost_signal = match (says("exitOnRCLost"), says("executeRCLostAction")) {
+        (Some("goContinue"), _) => Some(LostSignal::GoOn),
+        (_, Some("goBack")) => Some(LostSignal::ReturnHome),
+        (_, Some("hover")) => Some(LostSignal::Hover),
+        (_, Some("landing")) => Some(LostSignal::Land),
+        (_, None) => None,
+        (_, Some(other)) => {
+            let other = shown(other);
+            notes.say(format!(
+                "what it does where the radio is lost ({other}) is not known, and not read"
+            ));
+            None
+        }
     };
     let codes = |info: &'static str, names: [&'static str; 3]| -> Result<_, Fault> {
         let Some(info) = child(config, info) else {
@@ -233,6 +254,7 @@ fn of_config(config: Node<'_, '_>, notes: &mut Notes) -> Result<Mission, Fault> 
         safe_height: number(config, "takeOffSecurityHeight")?,
         return_height: number(config, "globalRTHHeight")?,
         finish,
+        lost_signal,
         ..Mission::default()
     })
 }

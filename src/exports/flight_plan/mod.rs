@@ -1,5 +1,13 @@
 //! A plan of photos, going out: a table for people, CSV, JSON. Lengths are in the world's unit, scales in pixels per a
 //! unit that the reader chose; both are said.
+//!
+//! ```text
+//! warnings  what is to be said beside the numbers
+//! ```
+
+mod warnings;
+
+pub use warnings::plan_warnings;
 
 use glam::DVec2;
 use serde_json::{Value, json};
@@ -8,10 +16,9 @@ use crate::measured::{csv_of, percent, rows_of_text};
 use crate::numbers::significant_digits;
 use crate::survey::Polygon;
 use crate::units::LengthUnit;
-use fragscale_core::plan::{Pace, Plan, PlannedPhoto, Purpose, Refused, Shadows, Sun, Way};
-
-/// Of a survey that shows less of the area three times it is said.
-const SURVEYED: f64 = 0.97;
+use fragscale_core::plan::{
+    Pace, Plan, PlannedPhoto, Purpose, Refused, Shadows, Sun, Way, homes_over_keep_out,
+};
 
 /// A plan, and how it is to be said.
 #[derive(Debug, Clone, Copy)]
@@ -181,6 +188,9 @@ pub fn plan_table(report: &PlanReport<'_>) -> String {
     if let Some(share) = plan.cover.surveyed {
         said.push(("in 3 of the survey", percent(share)));
     }
+    if let Some(words) = overlap_in_words(plan) {
+        said.push(("survey's overlap", words));
+    }
     if !report.ways.is_empty() {
         let length = format!("{} {world}", number(report.way_length()));
         let minutes = significant_digits(report.seconds() / 60.0, 2);
@@ -207,6 +217,17 @@ pub fn kinds_in_words(plan: &Plan) -> Option<String> {
         .then(|| format!("{scales} for scales (P), {survey} of the survey (S)"))
 }
 
+/// How much photos of the survey share with the next, as it was wished and where the ground of the area comes nearest to them;
+/// `None` where no photo of a survey looks straight down.
+pub(crate) fn overlap_in_words(plan: &Plan) -> Option<String> {
+    let (wished, least) = (plan.wish.survey.overlap, plan.cover.least_overlap?);
+    Some(format!(
+        "{} in the mean, {} over the highest of the area",
+        percent(wished),
+        percent(least.max(0.0))
+    ))
+}
+
 /// Where the sun stands and how much lies in shadow; `None` where the time is not known.
 pub(crate) fn sun_in_words(report: &PlanReport<'_>) -> Option<String> {
     let (sun, shadows) = report.sun?;
@@ -219,46 +240,6 @@ pub(crate) fn sun_in_words(report: &PlanReport<'_>) -> Option<String> {
         sun.azimuth,
         percent(shadows.area)
     ))
-}
-
-/// What is to be said of a plan beside its numbers, one sentence each.
-pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
-    let PlanReport { plan, world, .. } = report;
-    let mut said = Vec::new();
-    if report.is_nominal {
-        let text = "the focal length is the maker's nominal one: scales may be off by 2 %; a calibrated camera is surer";
-        said.push(text.to_owned());
-    }
-    let count =
-        |wrong: &dyn Fn(usize) -> bool| (0..plan.photos.len()).filter(|n| wrong(*n)).count();
-    let troubled = count(&|number| !plan.troubles(number).is_empty());
-    if troubled > 0 {
-        said.push(format!(
-            "{troubled} of {} photos do not hold what was asked for; each says why",
-            plan.photos.len()
-        ));
-    }
-    if plan.cover.off_surface > 0.03 {
-        let off = percent(plan.cover.off_surface);
-        said.push(format!(
-            "{off} of the area lies beside the surface or in holes of it: no photo is planned there"
-        ));
-    }
-    if let Some(share) = plan.cover.surveyed.filter(|share| *share < SURVEYED) {
-        let less = percent(1.0 - share);
-        said.push(format!(
-            "{less} of the area is in fewer than three photos of the survey: it may be missing in a reconstruction; give the survey more overlap"
-        ));
-    }
-    said.extend(plan.refused.iter().map(refused_in_words));
-    if let (Some(at), true) = (plan.cover.gap_at, plan.has_wide_gap()) {
-        let gap = significant_digits(plan.cover.widest_gap, 2);
-        said.push(format!(
-            "photos leave a gap {gap} {world} across at {}: give more overlap, fill gaps, or fly it by hand",
-            place_in_words(at)
-        ));
-    }
-    said
 }
 
 /// A photo that cannot be taken, in a sentence.
@@ -388,6 +369,9 @@ pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
         "area": corners(&plan.area),
         "photographed": plan.cover.covered,
         "surveyed": plan.cover.surveyed,
+        "least_survey_overlap": plan.cover.least_overlap,
+        "homes_over_keep_out": (!report.ways.is_empty())
+            .then(|| homes_over_keep_out(plan, report.ways)),
         "widest_gap": plan.cover.widest_gap,
         "ways": report.ways.iter().map(|way| json!({
             "length": way.length,

@@ -1,0 +1,143 @@
+//! Planned against flown: which photo is which planned one.
+
+use super::*;
+use crate::camera::Pose;
+
+/// A place of the surface's middle.
+fn at_corner(x: f64, y: f64, z: f64) -> DVec3 {
+    DVec3::new(499_940.0 + x, 4_999_940.0 + y, z)
+}
+
+/// Rows straight down, and at each end two stops 0.3 apart that look aslant two ways, as a ring's corners have; all photos are
+/// off by 1 and 0.5, and 48 higher, as heights above the ellipsoid are. With the camera's own names, with one photo that was
+/// not taken and one more; in disorder, too, and named as DJI adds names.
+#[test]
+fn what_all_photos_are_off_does_not_count() {
+    let (camera, surface) = (camera(), surface(|_| 5.0));
+    let mut planned = Vec::new();
+    for row in 0..4 {
+        for at in 0..6 {
+            let y = 40.0 + 4.0 * f64::from(at);
+            let center = at_corner(40.0 + 6.0 * f64::from(row), y, 25.0);
+            planned.push(Pose::from_tilt_pan(
+                center,
+                [90.0, 180.0 * f64::from(row % 2)],
+            ));
+        }
+        for turn in 0..2 {
+            let center = at_corner(
+                30.0 + 0.3 * f64::from(turn),
+                30.0 + 6.0 * f64::from(row),
+                20.0,
+            );
+            planned.push(Pose::from_tilt_pan(
+                center,
+                [55.0, 30.0 + 25.0 * f64::from(turn)],
+            ));
+        }
+    }
+    let planned: Vec<PlannedPose> = (planned.into_iter().zip(1..))
+        .map(|(pose, number)| PlannedPose {
+            name: format!("S{number:03}"),
+            pose,
+        })
+        .collect();
+    let missing = 9;
+    let flown = |off: DVec3| -> Vec<Pose> {
+        let poses = planned
+            .iter()
+            .enumerate()
+            .filter(|(number, _)| *number != missing);
+        let moved = poses.map(|(_, plan)| Pose {
+            center: plan.pose.center + off,
+            ..plan.pose
+        });
+        let more = Pose::from_tilt_pan(at_corner(100.0, 100.0, 30.0) + off, [10.0, 0.0]);
+        moved.chain([more]).collect()
+    };
+    let paired = |poses: &[Pose], names: &[String]| {
+        let taken: Vec<Taken<'_>> = (poses.iter().zip(names))
+            .map(|(pose, name)| Taken {
+                name,
+                pose,
+                camera: &camera,
+            })
+            .collect();
+        let found = Flown::compare(&planned, &taken, &surface, &Progress::default()).unwrap();
+        let photos = found.residuals.iter().map(|own| own.map(|own| own.photo));
+        photos.collect::<Vec<_>>()
+    };
+    let wanted: Vec<Option<usize>> = (0..planned.len())
+        .map(|number| match number.cmp(&missing) {
+            std::cmp::Ordering::Less => Some(number),
+            std::cmp::Ordering::Equal => None,
+            std::cmp::Ordering::Greater => Some(number - 1),
+        })
+        .collect();
+    let count = planned.len();
+    // Without leading zeros: 2 comes before 10.
+    let in_order: Vec<String> = (0..count).map(|n| format!("DJI_{}.JPG", n + 1)).collect();
+    let in_disorder: Vec<String> = (0..count)
+        .map(|n| format!("{}.JPG", n * 13 % count))
+        .collect();
+    for off in [
+        DVec3::ZERO,
+        DVec3::new(1.0, 0.5, 0.0),
+        DVec3::new(1.0, 0.5, 48.3),
+    ] {
+        let poses = flown(off);
+        assert_eq!(paired(&poses, &in_order), wanted, "{off}");
+        assert_eq!(paired(&poses, &in_disorder), wanted, "{off}");
+    }
+    // By names, wherever they are: the mission's behind DJI's own, of those that were taken.
+    let poses = flown(DVec3::new(9.0, 9.0, 9.0));
+    let named: Vec<String> = (wanted.iter().enumerate())
+        .filter(|(_, photo)| photo.is_some())
+        .map(|(number, _)| format!("DJI_20260601_0001_{}.JPG", planned[number].name))
+        .collect();
+    assert_eq!(paired(&poses[..count - 1], &named), wanted);
+}
+
+/// Photos in a row nearer together than each is off by itself: their order tells which is which, and one that was
+/// taken again at the end is of the plan that has none.
+#[test]
+fn an_order_decides_between_photos_that_are_alike() {
+    let (camera, surface) = (camera(), surface(|_| 5.0));
+    let planned: Vec<PlannedPose> = (0..20)
+        .map(|number| PlannedPose {
+            name: format!("S{number:03}"),
+            pose: Pose::from_tilt_pan(at_corner(40.0 + f64::from(number), 60.0, 25.0), [90.0, 0.0]),
+        })
+        .collect();
+    // Off by up to 1.4 along the row, in a pattern that has no order.
+    let poses: Vec<Pose> = (planned.iter().zip(0_u32..))
+        .map(|(plan, number)| {
+            let off = f64::from(number * 7 % 10) * 0.28 - 1.26;
+            Pose {
+                center: plan.pose.center + DVec3::new(off, 0.0, 0.0),
+                ..plan.pose
+            }
+        })
+        .collect();
+    let names: Vec<String> = (1..=20)
+        .map(|number| format!("DJI_{number:04}.JPG"))
+        .collect();
+    let paired = |poses: &[Pose]| -> Vec<usize> {
+        let taken = poses.iter().zip(&names).map(|(pose, name)| Taken {
+            name,
+            pose,
+            camera: &camera,
+        });
+        let taken: Vec<Taken<'_>> = taken.collect();
+        let found = Flown::compare(&planned, &taken, &surface, &Progress::default()).unwrap();
+        let found = found.residuals.iter().flatten();
+        found.map(|own| own.photo).collect()
+    };
+    assert_eq!(paired(&poses), (0..20).collect::<Vec<_>>());
+    // The sixth was taken last: those between are not moved on by one.
+    let mut late: Vec<Pose> = planned.iter().map(|plan| plan.pose).collect();
+    let sixth = late.remove(5);
+    late.push(sixth);
+    let wanted: Vec<usize> = (0..5).chain([19]).chain(5..19).collect();
+    assert_eq!(paired(&late), wanted);
+}
