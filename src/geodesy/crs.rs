@@ -7,6 +7,7 @@ use proj4rs::Proj;
 use proj4rs::transform::transform;
 
 use super::definition::{Definition, utm_code};
+use super::heights::{ELLIPSOID_WORD, Heights};
 use super::proj_text::ProjText;
 use super::{Geographic, ecef_from_geographic, enu_axes, geographic_from_ecef};
 use crate::fault::Fault;
@@ -66,7 +67,7 @@ impl fmt::Debug for Crs {
 const SAME_LENGTH: f64 = 1e-9;
 
 impl Crs {
-    /// Understands "EPSG:n" or "EPSG:n+m" (m: heights), "ECEF", WKT 1 or 2, a PROJ string, or
+    /// Understands "EPSG:n" or "EPSG:n+m" (m: heights, or "ellipsoid"), "ECEF", WKT 1 or 2, a PROJ string, or
     /// "WGS84 UTM 17N".
     ///
     /// # Errors
@@ -79,6 +80,14 @@ impl Crs {
         let code = definition.code.filter(is_in_table);
         let name = match (code, definition.heights.code) {
             (Some(code), Some(heights)) => format!("EPSG:{code}+{heights}"),
+            // A map's system with heights of its own, which no code says.
+            (Some(code), None)
+                if definition.heights == Heights::ellipsoidal()
+                    && Definition::of_code(code)
+                        .is_ok_and(|known| known.heights != definition.heights) =>
+            {
+                format!("EPSG:{code}+{ELLIPSOID_WORD}")
+            }
             (Some(code), None) => format!("EPSG:{code}"),
             (None, _) => text.trim_start_matches('\u{feff}').trim().to_owned(),
         };

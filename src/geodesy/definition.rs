@@ -1,10 +1,10 @@
 //! From the texts that name a coordinate system to what it is made of.
 //!
-//! Understood are "EPSG:n" and "EPSG:n+m" (m the vertical system), also as URN or address of OGC,
+//! Understood are "EPSG:n" and "EPSG:n+m" (m the vertical system, or "ellipsoid"), also as URN or address of OGC,
 //! "ECEF", WKT 1 and 2 (with an EPSG code, or what proj4wkt makes of it; compound, bound and 3D ones),
 //! PROJ strings, "WGS84 UTM 17N" as OpenDroneMap writes it, and "WGS 84".
 
-use super::heights::{Heights, parts_of_compound};
+use super::heights::{ELLIPSOID_WORD, Heights, parts_of_compound};
 use super::proj_text::ProjText;
 use super::wkt::{Node, REMEDY};
 use crate::fault::Fault;
@@ -55,7 +55,11 @@ impl Definition {
             text.trim().parse().map_err(|_| what())
         };
         let definition = Self::of_code(number(horizontal)?)?;
-        match vertical {
+        match vertical.map(str::trim) {
+            Some(word) if word.eq_ignore_ascii_case(ELLIPSOID_WORD) => Ok(Self {
+                heights: Heights::ellipsoidal(),
+                ..definition
+            }),
             Some(code) => Ok(Self {
                 heights: Heights::of_code(number(code)?),
                 ..definition
@@ -519,6 +523,23 @@ mod tests {
             with(r#"VERT_CS["Ellipsoid (metre)",VERT_DATUM["Ellipsoid",2002],UNIT["metre",1]]"#),
             ("the ellipsoid".to_owned(), 1.0)
         );
+        // A map's system with heights above its ellipsoid keeps them in its name, as it is written into a flight's file.
+        let three = UTM33.replace("PROJECTION[", "CS[Cartesian,3],PROJECTION[");
+        for text in [
+            format!(
+                r#"COMPD_CS["a",{UTM33},VERT_CS["Ellipsoid",VERT_DATUM["Ellipsoid",2002],UNIT["metre",1]]]"#
+            ),
+            three,
+        ] {
+            let crs = Crs::understand(&text).unwrap();
+            assert_eq!(crs.name(), "EPSG:32633+ellipsoid");
+            let again = Crs::understand(crs.name()).unwrap();
+            assert_eq!(
+                (again.name(), again.heights()),
+                (crs.name(), "the ellipsoid")
+            );
+        }
+        assert_eq!(Crs::understand("EPSG:4979").unwrap().name(), "EPSG:4979");
         // ESRI appends it.
         let esri = format!(
             "{UTM33},VERTCS[\"EGM96_Geoid\",VDATUM[\"EGM96_Geoid\"],PARAMETER[\"Vertical_Shift\",0.0],PARAMETER[\"Direction\",1.0],UNIT[\"Meter\",1.0]]"

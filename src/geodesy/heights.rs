@@ -1,5 +1,8 @@
 //! What the heights of a coordinate system count from: EPSG's vertical systems that surveys name.
 
+/// What stands for the ellipsoid where a vertical system has its code: "EPSG:32632+ellipsoid".
+pub(super) const ELLIPSOID_WORD: &str = "ellipsoid";
+
 /// A vertical system.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Heights {

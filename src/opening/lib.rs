@@ -75,7 +75,7 @@ pub use pixels::{
     Colours, ComparedPixels, PhotosTogether, Together, compare_all_pixels, compare_pixels,
     take_compared,
 };
-pub use second_surface::{SecondSurface, StatedWorld, second_surface};
+pub use second_surface::{SecondSurface, StatedWorld, second_surface, volume_base};
 
 #[cfg(test)]
 mod tests;

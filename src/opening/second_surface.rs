@@ -12,7 +12,7 @@ use crate::geometry::Bounds;
 use crate::jobs::Progress;
 use crate::surface::Surface;
 use crate::units::LengthUnit;
-use crate::world::{WorldFrame, taken_to_be_in};
+use crate::world::{ELLIPSOID, WorldFrame, taken_to_be_in};
 
 /// Of two surfaces whose files say nothing of their world, one that lies farther away than so many times
 /// the other's size is in another world.
@@ -34,6 +34,8 @@ pub struct StatedWorld<'a> {
 pub struct SecondSurface {
     /// Its triangles.
     pub surface: Arc<Surface>,
+    /// What its heights count from and the flight's, in words, where both say it and that is not the same.
+    pub other_heights: Option<[String; 2]>,
     /// What was noticed, one sentence each with the file in front.
     pub warnings: Vec<String>,
     /// The files that were read.
@@ -55,15 +57,46 @@ pub fn second_surface(
     let mut said = std::mem::take(&mut file.warnings);
     let own = WorldFrame::of_cloud(&file, &mut said).map_err(at)?;
     said.extend(bring(&own, &mut file.cloud.points, world).map_err(at)?);
+    let other_heights = own.heights_apart_from(&frame_of(world));
+    if let Some([own, theirs]) = &other_heights {
+        said.push(format!(
+            "its heights count from {own}, the flight's from {theirs}: they are as far apart as these are, decimetres to metres between geoids, tens of metres to the ellipsoid"
+        ));
+    }
     progress.stage("building the second surface");
     let surface = Surface::new(file.cloud)
         .map_err(|error| at(Fault::new(error.to_string(), "check the file")))?;
     let name = path.display();
     Ok(SecondSurface {
         surface: Arc::new(surface),
+        other_heights,
         warnings: said.iter().map(|said| format!("{name}: {said}")).collect(),
         read: Inputs::of([path]).with_opened(&recording.files()),
     })
+}
+
+/// Reads a cloud or mesh that a volume is to be over, as [`second_surface`].
+///
+/// # Errors
+/// As that, and where the heights of one count from the ellipsoid and those of the other do not: they are tens of metres
+/// apart in most places, and so would the volume be.
+pub fn volume_base(
+    path: &Path,
+    world: &StatedWorld<'_>,
+    progress: &Progress,
+) -> Result<SecondSurface, FileError> {
+    let second = second_surface(path, world, progress)?;
+    match &second.other_heights {
+        Some([own, theirs]) if [own, theirs].map(|it| it == ELLIPSOID).contains(&true) => {
+            let what = format!(
+                "its heights count from {own}, the flight's from {theirs}, which are tens of metres apart in most places"
+            );
+            let remedy =
+                "export both with heights above the same, for no volume between them is true";
+            Err(FileError::new(path, Fault::new(what, remedy)))
+        }
+        _ => Ok(second),
+    }
 }
 
 /// Brings points to the world; says what was done.
@@ -72,10 +105,7 @@ fn bring(
     points: &mut [glam::DVec3],
     world: &StatedWorld<'_>,
 ) -> Result<Option<String>, Fault> {
-    let theirs = match world.crs.map(Crs::understand) {
-        Some(Ok(crs)) => WorldFrame::Named(crs),
-        _ => WorldFrame::AsIs(world.crs.map(str::to_owned)),
-    };
+    let theirs = frame_of(world);
     match (own.is_as_it_is(), theirs.is_as_it_is()) {
         (false, false) => {
             let way = own.to(&theirs);
@@ -102,6 +132,13 @@ fn bring(
             let text = "taken to be in the flight's own frame: neither of the two states a coordinate system";
             Ok(Some(text.to_owned()))
         }
+    }
+}
+
+fn frame_of(world: &StatedWorld<'_>) -> WorldFrame {
+    match world.crs.map(Crs::understand) {
+        Some(Ok(crs)) => WorldFrame::Named(crs),
+        _ => WorldFrame::AsIs(world.crs.map(str::to_owned)),
     }
 }
 

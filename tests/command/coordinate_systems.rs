@@ -259,6 +259,85 @@ fn heights_of_two_levels_are_a_reason_for_doubt() {
     assert!(!reasons(&opened).contains(&"other-heights"), "{opened:?}");
 }
 
+/// A volume between heights above the ellipsoid and above a geoid is refused, between two geoids it is said, in all that is
+/// written; between the same, or where one does not say, it is neither.
+#[test]
+fn volumes_between_heights_of_two_levels() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let heights = |name: &str, code: u32| {
+        format!(
+            r#"COMPD_CS["a map and heights",{UTM_33},VERT_CS["{name}",VERT_DATUM["a datum",2005],UNIT["metre",1],AXIS["Up",UP],AUTHORITY["EPSG","{code}"]]]"#
+        )
+    };
+    let square = |z: f64| {
+        let corners = [(0.0, 0.0), (40.0, 0.0), (40.0, 40.0), (0.0, 40.0)];
+        corners.map(|(x, y)| DVec3::new(500_000.0 + x, 5_400_000.0 + y, z))
+    };
+    let (egm, dhhn) = (
+        heights("EGM96 height", 5773),
+        heights("DHHN2016 height", 7837),
+    );
+    for (name, system, z) in [
+        ("top.laz", egm.as_str(), 102.0),
+        ("same.laz", &egm, 100.0),
+        ("other.laz", &dhhn, 100.0),
+        ("unsaid.laz", UTM_33, 100.0),
+    ] {
+        write_laz(&folder.path().join(name), system, &square(z));
+    }
+    let polygon = "500010,5400010;500020,5400010;500020,5400020;500010,5400020";
+    let measured = |top: &str, base: &str| {
+        let (top, base) = (path(top), path(base));
+        crate::common::fragscale(&[
+            "volume",
+            &top,
+            "--polygon",
+            polygon,
+            "--base",
+            &base,
+            "--format",
+            "json",
+        ])
+    };
+    for (base, apart) in [
+        ("same.laz", false),
+        ("unsaid.laz", false),
+        ("other.laz", true),
+    ] {
+        let output = measured("top.laz", base);
+        let warned = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{warned}");
+        let said = "heights count from DHHN2016, the flight's from the geoid EGM96";
+        assert_eq!(warned.contains(said), apart, "{base}: {warned}");
+        let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        // 100 square metres, 2 m high.
+        assert!(
+            (found["fill"].as_f64().unwrap() - 200.0).abs() < 0.3,
+            "{found}"
+        );
+        let told = &found["base"]["other_heights"]["base"];
+        assert_eq!(told.as_str(), apart.then_some("DHHN2016"), "{found}");
+    }
+    let ellipsoid = format!(
+        r#"COMPD_CS["a map and heights",{UTM_33},VERT_CS["Ellipsoid (metres)",VERT_DATUM["Ellipsoid",2002],UNIT["metre",1],AXIS["Up",UP]]]"#
+    );
+    write_laz(
+        &folder.path().join("ellipsoid.laz"),
+        &ellipsoid,
+        &square(100.0),
+    );
+    let output = measured("top.laz", "ellipsoid.laz");
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{error}");
+    assert!(
+        error.contains(
+            "ellipsoid.laz: its heights count from the ellipsoid, the flight's from the geoid EGM96"
+        ),
+        "{error}"
+    );
+}
+
 /// A model in a frame of its own counts in no unit because the file of its cloud names a system: a map's, at whose origin it lies,
 /// or a local one. Where both are on the map it does.
 #[test]

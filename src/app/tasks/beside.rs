@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::work::Task;
 use crate::jobs::Progress;
-use crate::open_flight::OpenFlight;
+use crate::opening::second_surface;
 use crate::render::BesideCloud;
 use crate::state::State;
 
@@ -23,7 +23,9 @@ impl State {
         if self.is_busy(Task::BESIDE) {
             return;
         }
-        self.read_second_surface(Task::BESIDE, path, OpenFlight::add_beside);
+        self.read_second_surface(Task::BESIDE, path, second_surface, |open, path, second| {
+            open.add_beside(path, second.surface);
+        });
     }
 
     /// Uploads the next cloud beside the surface that is not, or has another colour by now.

@@ -1,7 +1,6 @@
 //! Writing what was measured on the surface, and reading what volumes are over.
 
-use std::path::PathBuf;
-use std::sync::Arc;
+use std::path::{Path, PathBuf};
 
 use super::work::Task;
 use crate::command::{Command, Destination, MeasuredTable};
@@ -10,9 +9,8 @@ use crate::formats::FileError;
 use crate::jobs::Progress;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::SecondBase;
-use crate::opening::{StatedWorld, second_surface};
+use crate::opening::{SecondSurface, StatedWorld, volume_base};
 use crate::state::{Severity, State};
-use crate::surface::Surface;
 
 impl Task {
     /// Writing a table of what was measured.
@@ -25,17 +23,27 @@ impl State {
     /// Reads a second surface for volumes to be over, as the command does.
     pub(crate) fn read_volume_base(&mut self, path: PathBuf) {
         self.asking = None;
-        self.read_second_surface(Task::VOLUME_BASE, path, |open, path, surface| {
-            open.take_second_base(SecondBase { path, surface });
-        });
+        self.read_second_surface(
+            Task::VOLUME_BASE,
+            path,
+            volume_base,
+            |open, path, second| {
+                open.take_second_base(SecondBase {
+                    path,
+                    surface: second.surface,
+                    other_heights: second.other_heights,
+                });
+            },
+        );
     }
 
-    /// Reads a second surface in the flight's world; `take` gets it.
+    /// Reads a second surface in the flight's world by `read`; `take` gets it.
     pub(super) fn read_second_surface(
         &mut self,
         task: Task,
         path: PathBuf,
-        take: impl FnOnce(&mut OpenFlight, PathBuf, Arc<Surface>) + Send + 'static,
+        read: fn(&Path, &StatedWorld<'_>, &Progress) -> Result<SecondSurface, FileError>,
+        take: impl FnOnce(&mut OpenFlight, PathBuf, SecondSurface) + Send + 'static,
     ) {
         let Some(open) = &self.open else {
             return;
@@ -48,7 +56,7 @@ impl State {
                 unit: parts.unit_known.then_some(parts.unit),
                 around: parts.surface.bounds(),
             };
-            second_surface(&path, &world, progress).map(|second| (path, second))
+            read(&path, &world, progress).map(|second| (path, second))
         };
         self.start(task, work, |state, read| match read {
             Ok((path, second)) => {
@@ -57,7 +65,7 @@ impl State {
                 }
                 if let Some(open) = &mut state.open {
                     open.files.read.extend(&second.read);
-                    take(open, path, second.surface);
+                    take(open, path, second);
                 }
             }
             Err(error) => state.say(Severity::Error, &error.to_string()),

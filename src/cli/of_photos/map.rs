@@ -82,7 +82,7 @@ pub(in crate::cli) fn map(arguments: &MapArguments, progress: &Progress) -> Resu
     let drawn: Vec<PathBuf> = drawn.map(PathBuf::from).collect();
     let outputs = Outputs::new(arguments.force, arguments.flight.files().chain(&drawn));
     let mut outputs = outputs.and(output, Kind::Result)?;
-    let opened = arguments.flight.open(progress)?;
+    let opened = arguments.flight.open_to_measure(progress)?;
     outputs.read(&opened.read)?;
     for areas in polygons {
         let crs = || arguments.flight.crs_of(None, &opened, ON_EARTH_REMEDY);

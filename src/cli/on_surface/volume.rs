@@ -4,15 +4,16 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::places::ON_EARTH_REMEDY;
+use super::places::{ON_EARTH_REMEDY, beside};
 use crate::cli::Answer;
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::outputs::AnswerArguments;
 use crate::exports::{self, MeasuredUnit, VolumeReport};
 use crate::fault::Fault;
 use crate::formats::FileError;
+use crate::geodesy::Crs;
 use crate::jobs::Progress;
-use crate::opening::{Areas, StatedWorld, second_surface};
+use crate::opening::{Areas, StatedWorld, volume_base};
 use crate::survey::{self, Base};
 
 #[derive(Debug, Args)]
@@ -76,7 +77,7 @@ pub(in crate::cli) fn volume(
     outputs.read(&opened.read)?;
     let crs = || arguments.flight.crs_of(None, &opened, ON_EARTH_REMEDY);
     let (polygon, mut warnings) = polygon.one_in_world("polygon", crs)?;
-    let other = match base_file {
+    let (other, other_heights) = match base_file {
         Some(path) => {
             let parts = opened.flight.parts();
             let world = StatedWorld {
@@ -84,12 +85,12 @@ pub(in crate::cli) fn volume(
                 unit: parts.unit_known.then_some(parts.unit),
                 around: parts.surface.bounds(),
             };
-            let other = second_surface(path, &world, progress).map_err(|e| e.to_string())?;
+            let other = volume_base(path, &world, progress).map_err(|e| e.to_string())?;
             outputs.read(&other.read)?;
             warnings.extend(other.warnings);
-            Some(other.surface)
+            (Some(other.surface), other.other_heights)
         }
-        None => None,
+        None => (None, None),
     };
     let parts = opened.flight.parts();
     let base = match (&arguments.base, &other) {
@@ -109,9 +110,11 @@ pub(in crate::cli) fn volume(
             let remedy = "give a surface of the same place, in the same coordinates";
             return Err(FileError::new(base, Fault::new(what, remedy)).to_string());
         }
-        let what = "the polygon lies beside the surface, or over a hole of it";
-        let remedy = "give corners in its coordinates; 'fragscale info' shows its bounds";
-        let fault = Fault::new(what, remedy);
+        let world = opened
+            .crs
+            .as_deref()
+            .and_then(|crs| Crs::understand(crs).ok());
+        let fault = beside(&polygon, &parts.surface.bounds(), world.as_ref());
         return Err(arguments.flight.wrong(fault));
     }
     let base = base_file.map(|path| path.display().to_string());
@@ -120,6 +123,7 @@ pub(in crate::cli) fn volume(
         unit: MeasuredUnit::of(parts),
         volume: &volume,
         base: base.as_deref(),
+        other_heights: other_heights.as_ref(),
     };
     warnings.extend(exports::volume_warnings(&volume));
     let text = arguments.answer.deliver(

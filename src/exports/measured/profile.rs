@@ -83,11 +83,16 @@ pub fn profile_table(report: &ProfileReport<'_>) -> String {
 /// A stretch of less of the line is a stone's side, no slope of the pile.
 const LEAST_STRETCH: f64 = 0.05;
 
-/// Whether the angle of repose of a face is that of a stone's side, on a profile of that length.
+/// A face that is less gentle than its steepest stretch, degrees, is as steep all over: a wall.
+const WALL: f64 = 10.0;
+
+/// Whether the angle of repose of a face is that of a stone's side, on a profile of that length: of a short stretch that is much
+/// steeper than the face.
 pub fn is_of_a_stone(face: &Face, length: f64) -> bool {
     let stretch = |[from, to]: [f64; 2]| (to - from).abs();
-    face.fitted
-        .is_some_and(|fitted| stretch(fitted) < LEAST_STRETCH * length)
+    let is_wall = (face.repose).is_some_and(|repose| repose - face.overall < WALL);
+    let is_short = |fitted| stretch(fitted) < LEAST_STRETCH * length;
+    face.fitted.is_some_and(is_short) && !is_wall
 }
 
 fn repose(face: &Face, length: f64, unit: &str) -> String {

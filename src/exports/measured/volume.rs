@@ -17,6 +17,8 @@ pub struct VolumeReport<'a> {
     pub volume: &'a Volume,
     /// How the other surface is called, where it is over one.
     pub base: Option<&'a str>,
+    /// What that one's heights count from and the surface's, where it is not the same.
+    pub other_heights: Option<&'a [String; 2]>,
 }
 
 impl VolumeReport<'_> {
@@ -33,7 +35,17 @@ impl VolumeReport<'_> {
                 plane.slope(),
                 significant_digits(plane.residual, 2)
             ),
-            BaseFound::Surface => self.base.unwrap_or("the other surface").to_owned(),
+            BaseFound::Surface => {
+                let base = self.base.unwrap_or("the other surface");
+                match self.other_heights {
+                    None => base.to_owned(),
+                    Some([own, theirs]) => {
+                        format!(
+                            "{base}, heights above {own}; those of the surface are above {theirs}"
+                        )
+                    }
+                }
+            }
         }
     }
 }
@@ -153,7 +165,12 @@ pub fn volume_json(report: &VolumeReport<'_>) -> Result<String, serde_json::Erro
             "slope_degrees": plane.slope(),
             "residual": plane.residual,
         }),
-        BaseFound::Surface => json!({"kind": "surface", "file": report.base}),
+        BaseFound::Surface => json!({
+            "kind": "surface",
+            "file": report.base,
+            "other_heights": report.other_heights
+                .map(|[own, theirs]| json!({"base": own, "surface": theirs})),
+        }),
     };
     let value = json!({
         "flight": report.flight,

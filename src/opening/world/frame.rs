@@ -11,6 +11,9 @@ use crate::geodesy::{
 };
 use crate::units::LengthUnit;
 
+/// What heights above an ellipsoid count from, in words.
+pub(crate) const ELLIPSOID: &str = "the ellipsoid";
+
 /// The system of longitudes and latitudes of which nothing else is said.
 const WGS84: &str = "EPSG:4326";
 
@@ -186,21 +189,29 @@ impl WorldFrame {
         match self {
             Self::AsIs(_) => "not said",
             Self::Enu(_) => "the ellipsoid at its origin",
-            Self::Named(crs) if crs.kind() == CrsKind::Geocentric => "the ellipsoid",
+            Self::Named(crs) if crs.kind() == CrsKind::Geocentric => ELLIPSOID,
             Self::Named(crs) => crs.heights(),
         }
     }
 
     /// That heights here count from the ellipsoid and there from something else, or the other way round, in words for here and
-    /// there; `None` where one of them does not say. What a local frame's origin counts from is not sure.
+    /// there; `None` where one of them does not say.
     pub(crate) fn other_heights(&self, there: &Self) -> Option<[String; 2]> {
+        let both = self.heights_apart_from(there)?;
+        both.iter()
+            .any(|heights| heights == ELLIPSOID)
+            .then_some(both)
+    }
+
+    /// What heights count from here and there, in words, where that is not the same; `None` where one of them does not say. What
+    /// a local frame's origin counts from is not sure.
+    pub(crate) fn heights_apart_from(&self, there: &Self) -> Option<[String; 2]> {
         let stated = |frame: &Self| match frame {
             Self::Named(crs) if crs.states_heights() => Some(crs.heights().to_owned()),
             _ => None,
         };
         let both = [stated(self)?, stated(there)?];
-        let [here, there] = both.each_ref().map(|heights| heights == "the ellipsoid");
-        (here != there).then_some(both)
+        (both[0] != both[1]).then_some(both)
     }
 
     /// The place of a point; `None` outside of what the system covers.

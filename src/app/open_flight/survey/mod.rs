@@ -44,6 +44,8 @@ pub struct SecondBase {
     pub path: PathBuf,
     /// Its triangles.
     pub surface: Arc<Surface>,
+    /// What its heights count from and the flight's, where it is not the same.
+    pub other_heights: Option<[String; 2]>,
 }
 
 /// Something to do with them.
@@ -254,6 +256,14 @@ impl OpenFlight {
     pub fn base_name(&self, drawn: &Drawn) -> Option<String> {
         let second = self.pointer.second.as_ref()?;
         (drawn.base == BaseChoice::Second).then(|| second.path.display().to_string())
+    }
+
+    /// What the heights of the second surface that the volume is over count from, and those of the flight's, where it is not
+    /// the same.
+    pub fn other_heights(&self, drawn: &Drawn) -> Option<&[String; 2]> {
+        let second = self.pointer.second.as_ref()?;
+        let is_over = drawn.base == BaseChoice::Second;
+        second.other_heights.as_ref().filter(|_| is_over)
     }
 
     /// Measures again, on another surface.

@@ -36,6 +36,7 @@ impl OpenFlight {
                 unit,
                 volume: drawn?.volume()?,
                 base: base.as_deref(),
+                other_heights: self.other_heights(drawn?),
             }),
         };
         Some(csv.map_err(|error| error.to_string()))

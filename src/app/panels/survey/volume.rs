@@ -108,6 +108,7 @@ pub(super) fn volume(
         unit,
         volume,
         base: base.as_deref(),
+        other_heights: open.other_heights(drawn),
     };
     if let BaseFound::Rim(_) = volume.base {
         ui.add(
