@@ -6,8 +6,9 @@
 //! one whose better half has the least of largest residuals wins (least quantile of squares, Rousseeuw
 //! 1984): nearly half of the pairs may be wrong, of four none. The spread of the good ones follows
 //! from that residual, and then from all that agree. Pairs farther off
-//! than 99.9 % of good ones would be are outliers; where accuracies are stated, no pair is one within
-//! its accuracy. What is left is fitted again, all together.
+//! than 99.9 % of good ones would be are outliers, of a spread that few pairs tell by Fisher's F; where accuracies
+//! are stated, no pair is one within its accuracy, and none is that is less off than anybody marks or surveys: a
+//! ten-thousandth of the extent, which moves the scale by no more. What is left is fitted again, all together.
 //!
 //! The standard error of the scale. With q the sources and y the targets, both from their weighted
 //! means, and R the rotation, the scale is s = sum(w q·Rᵀy) / sum(w |q|²) (Umeyama 1991, equation 42,
@@ -18,13 +19,17 @@
 //! ```
 //!
 //! with C the covariance of a residual r of weight 1: n pairs are 3 n numbers, and 7 were fitted. For
-//! equal weights and noise that is the same in all directions it is sigma² / sum(|q|²). It supposes
+//! equal weights and noise that is the same in all directions it is sigma² / sum(|q|²). Few pairs tell each direction's
+//! noise badly, and along their longest axis too small: C is drawn to its own mean as if two degrees of freedom more in
+//! each direction had that. In simulations with 3 to 30 pairs, on strips and squares, with noise that is the same in all directions
+//! or three times as much upwards, the 95 % interval then holds the truth in 93.6 to 98.7 of 100; without it in 87.9 of three
+//! and 91 of five. It supposes
 //! that the errors of the positions are independent. Those of a drifting receiver are not, and then
 //! the true error is larger.
 
 use glam::{DMat3, DVec3};
 
-use super::student::t95;
+use super::student::{length_999, t95};
 use super::umeyama::similarity_of;
 use crate::fault::Fault;
 use crate::geometry::{Similarity, median};
@@ -35,12 +40,16 @@ use crate::split_mix::SplitMix;
 /// coordinate): the root of the quantile of chi squared with three degrees of freedom. A tighter cut
 /// would take good ones away and with them the honesty of the standard error.
 const LENGTH_999: f64 = 4.033_142;
+/// Pairs that are off by so much of how far they reach from their middle may be good, however well the others fit.
+const LEAST_OFF: f64 = 1e-4;
 /// And half are below this many.
 const LENGTH_50: f64 = 1.538_172;
 /// As many minimal samples are tried at most.
 const MOST_SAMPLES: usize = 500;
 /// As many of them are drawn together.
 const FINALISTS: usize = 10;
+/// So many degrees of freedom in each direction have the noise of all together.
+const SHARED: f64 = 2.0;
 /// Radians that the rotation about the long axis of the positions may be unsure by (one standard
 /// deviation): 5 degrees. More, and they lie on a line.
 const LARGEST_ROTATION_ERROR: f64 = 0.087_266_462_6;
@@ -157,8 +166,8 @@ struct Problem {
     /// Whether accuracies are stated: then residuals count in them, and a weight is their inverse
     /// square.
     has_accuracies: bool,
-    /// Residuals of that length are rounding.
-    rounding: f64,
+    /// Nobody marks or surveys better: no pair with such a residual is wrong.
+    least: f64,
 }
 
 impl Problem {
@@ -173,7 +182,7 @@ impl Problem {
         let extent = pairs.iter().map(|pair| pair.1.length()).fold(0.0, f64::max);
         Self {
             has_accuracies: usual.is_some(),
-            rounding: 1e-7 * extent,
+            least: LEAST_OFF * extent,
             pairs,
         }
     }
@@ -256,15 +265,15 @@ impl Problem {
         };
         let stated = if self.has_accuracies { 1.0 } else { 0.0 };
         let first = (middle / LENGTH_50 * correction).max(stated);
-        let within = |distances: &[f64], spread: f64| -> Vec<usize> {
+        let within = |distances: &[f64], far: f64| -> Vec<usize> {
             let near = |index: &usize| {
                 let weight = self.pairs.get(*index).map_or(1.0, |pair| pair.2);
-                let limit = (LENGTH_999 * spread).max(self.rounding * weight.sqrt());
+                let limit = far.max(self.least * weight.sqrt());
                 distances.get(*index).is_some_and(|d| *d <= limit)
             };
             (0..count).filter(near).collect()
         };
-        let mut used = within(&distances, first);
+        let mut used = within(&distances, LENGTH_999 * first);
         for _ in 0..20 {
             if used.len() < 3 {
                 break;
@@ -277,8 +286,11 @@ impl Problem {
                 .filter_map(|i| distances.get(*i))
                 .map(|d| d * d)
                 .sum();
-            let spread = (squares / (3 * used.len() - 7) as f64).sqrt().max(first);
-            let next = within(&distances, spread);
+            let free = 3 * used.len() - 7;
+            let spread = (squares / free as f64).sqrt();
+            // What is known beforehand is not estimated from few.
+            let far = (length_999(free) * spread).max(LENGTH_999 * first);
+            let next = within(&distances, far);
             if next == used {
                 break;
             }
@@ -318,6 +330,10 @@ impl Problem {
             .map(|c| outer(c.3) * c.2)
             .fold(DMat3::ZERO, |a, b| a + b)
             * (3.0 / free as f64);
+        // Of few pairs no direction tells its own noise: all share some of what they have together.
+        let each = free as f64 / 3.0;
+        let together = DMat3::IDENTITY * (trace(covariance) / 3.0);
+        let covariance = (covariance * each + together * SHARED) * (each + SHARED).recip();
         let rotation = local.rotation;
         let (mut weighted, mut spread) = (0.0, 0.0);
         let (mut sources, mut targets) = (DMat3::ZERO, DMat3::ZERO);
@@ -494,6 +510,44 @@ mod tests {
         let share = f64::from(held) / f64::from(trials);
         assert!((0.92..0.975).contains(&share), "{share}");
         assert!(used > 30 * 500 * 98 / 100, "{used}");
+    }
+
+    /// Few pairs, as control points are: the interval holds the truth in 95 of 100, and good pairs are hardly ever left out; the
+    /// spread of five tells little of a sixth.
+    #[test]
+    fn few_pairs_are_not_taken_for_wrong() {
+        let mut noise = Noise(SplitMix(9));
+        // Around a place, as control points are laid out.
+        let around = |count: u32, noise: &mut Noise| -> Vec<DVec3> {
+            let places =
+                (0..count).map(|i| std::f64::consts::TAU * f64::from(i) / f64::from(count));
+            let places = places.map(|angle| DVec3::new(4.0 * angle.cos(), 2.0 * angle.sin(), 0.0));
+            places.map(|place| place + noise.vector() * 0.1).collect()
+        };
+        for count in [4, 5, 6, 8, 10] {
+            let points = around(count, &mut noise);
+            let trials = 1000;
+            let (mut held, mut left_out) = (0, 0);
+            for _ in 0..trials {
+                let found = fit(&pairs_of(&points, 0.05, &mut noise)).unwrap();
+                let error = found.similarity.scale / 12.5 - 1.0;
+                held += i32::from(error.abs() < found.scale_interval);
+                left_out += i32::from(found.count() < points.len());
+            }
+            let share = f64::from(held) / f64::from(trials);
+            assert!((0.93..0.97).contains(&share), "{count}: {share}");
+            assert!(left_out < 20, "{count}: {left_out}");
+        }
+        // Exact but for a millimetre in 60 metres, as lists are written: nobody marks or surveys that.
+        for count in [5, 8, 20] {
+            let points = around(count, &mut noise);
+            let mut pairs = pairs_of(&points, 0.0, &mut noise);
+            pairs[0].target += DVec3::new(1e-3, 5e-4, 5e-4);
+            assert_eq!(fit(&pairs).unwrap().count(), pairs.len());
+            // Half a metre is found.
+            pairs[0].target += DVec3::new(0.5, 0.0, 0.0);
+            assert_eq!(fit(&pairs).unwrap().count(), pairs.len() - 1);
+        }
     }
 
     /// Heights three times as noisy as positions: the scale of a level flight does not suffer.

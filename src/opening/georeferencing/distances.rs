@@ -132,7 +132,8 @@ pub(super) fn lengthen(
         sure(by_positions.1)
     );
     let room = [found.scale_interval, by_positions.1].map(Option::unwrap_or_default);
-    let contradict = match (ratio - 1.0).abs() > room[0].hypot(room[1]) {
+    let room = room[0].hypot(room[1]).max(LEAST_OF_TAPE);
+    let contradict = match (ratio - 1.0).abs() > room {
         true => format!(": {CONTRADICT}"),
         false => String::new(),
     };
@@ -268,21 +269,22 @@ pub(super) fn of_bars(
     known
 }
 
-/// How long scale bars are in the world that surveyed points gave; those that contradict the points are said.
+/// How long known distances, which are called so, are in the world that surveyed points gave; those that contradict the
+/// points are said.
 pub(super) fn compare(
     result: &mut Georeferenced,
-    bars: &[KnownDistance],
+    (called, known): (&str, &[KnownDistance]),
     marked: &[MarkedPoint],
 ) -> Result<(), Fault> {
     let metres = result.similarity.scale * result.unit.metres();
-    let lengths = known_lengths(bars, marked)?;
+    let lengths = known_lengths(known, marked)?;
     for (name, length) in &lengths {
         let fitted = length.found * metres;
         let by_marks = TO_95_PERCENT * length.deviation.unwrap_or_default() / length.found;
         let allowed = by_marks.hypot(result.scale_interval.unwrap_or_default());
         if (length.known / fitted - 1.0).abs() > allowed.max(LEAST_CONTRADICTION) {
             result.warnings.push(format!(
-                "the scale bar {name} is {:.4} m long by the surveyed points (± {}), and {:.4} m is typed: {CONTRADICT}",
+                "the {called} {name} is {:.4} m long by the surveyed points (± {}), and {:.4} m is typed: {CONTRADICT}",
                 fitted,
                 percent(allowed),
                 length.known
@@ -295,6 +297,9 @@ pub(super) fn compare(
 
 /// What is said of two lengths that cannot both be right.
 const CONTRADICT: &str = "they contradict each other; look whether it was measured between other points, or in another unit";
+
+/// No tape tells more of a length: a millimetre of a metre, and it sags.
+const LEAST_OF_TAPE: f64 = 0.001;
 
 /// Tapes and staffs are read to less.
 const LEAST_CONTRADICTION: f64 = 0.005;

@@ -5,6 +5,7 @@
 //! one that the positions are in, else the zone of UTM that they lie in. One unit of its grid is taken
 //! for one unit of length: in UTM that is true to 0.04 % at the zone's middle and 0.1 % at its edges.
 
+mod against_points;
 mod control_file;
 mod distances;
 mod exchanged;
@@ -28,6 +29,7 @@ use std::str::FromStr;
 
 use glam::DVec3;
 
+use self::against_points::against_points;
 use self::exchanged::exchanged;
 use self::georeferenced::percent;
 use self::list_world::ListWorld;
@@ -192,6 +194,10 @@ pub fn georeference_model(
     };
     if !request.distances.is_empty() && surveyed >= LEAST_SURVEYED {
         warnings.push("the known distance decides alone, and the surveyed control points are not used: leave --distance out to be placed by them".to_owned());
+        if let Some(points) = &points {
+            let named = ("known distance", request.distances.as_slice());
+            warnings.extend(against_points(named, points, &marked, request));
+        }
     }
     if surveyed > 0 && surveyed < LEAST_SURVEYED && !bars.is_empty() {
         let points = if surveyed == 1 {
@@ -299,7 +305,7 @@ pub fn georeference_model(
     result.crs = world.name().map(str::to_owned);
     result.unit = world.unit();
     if distances.is_empty() {
-        distances::compare(&mut result, &bars, &marked)
+        distances::compare(&mut result, ("scale bar", &bars), &marked)
     } else {
         distances::lengthen(&mut result, &known, distances, &marked)
     }

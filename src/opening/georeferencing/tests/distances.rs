@@ -291,6 +291,61 @@ fn careless_marks_are_taken() {
     );
 }
 
+/// A distance that decides alone is held against the surveyed points of the list that it names, as it is against positions; one
+/// that a tape tells no better is no contradiction.
+#[test]
+fn a_distance_is_held_against_surveyed_points() {
+    let list = List::new(&marks(&POINTS, "EPSG:32632"));
+    let apart = POINTS[0].1.distance(POINTS[1].1);
+    let said = |longer: f64| {
+        let request = GeoreferenceRequest {
+            control_points: Some(list.path()),
+            distances: vec![format!("p1 p2 {}", apart * longer).parse().unwrap()],
+            ..GeoreferenceRequest::default()
+        };
+        run(&request).unwrap().warnings.join("; ")
+    };
+    // As 70 for 68.03 m.
+    let wrong = said(1.029);
+    assert!(
+        wrong.contains("the known distance p1 to p2 is") && wrong.contains("contradict"),
+        "{wrong}"
+    );
+    let typed = format!("{:.4} m is typed", apart * 1.029);
+    assert!(wrong.contains(&typed), "{wrong}");
+    let right = said(1.0);
+    assert!(
+        right.contains("the surveyed control points are not used") && !right.contains("contradict"),
+        "{right}"
+    );
+}
+
+/// Positions to a tenth of a millimetre, and a distance of 7.5 m that is half a millimetre off: no tape tells that. A centimetre
+/// it does.
+#[test]
+fn what_no_tape_tells_is_no_contradiction() {
+    let mut list = "EPSG:32632\n".to_owned();
+    for (i, center) in centers().into_iter().enumerate() {
+        writeln!(
+            list,
+            "IMG_{i:04}.JPG {:.4} {:.4} {:.4}",
+            center.x, center.y, center.z
+        )
+        .unwrap();
+    }
+    let list = List::new(&list);
+    let said = |metres: f64| {
+        let request = GeoreferenceRequest {
+            positions: Some(list.path()),
+            distances: vec![format!("0,0,0 0,0,1 {metres}").parse().unwrap()],
+            ..GeoreferenceRequest::default()
+        };
+        run(&request).unwrap().warnings.join("; ")
+    };
+    assert!(!said(7.5005).contains("contradict"), "{}", said(7.5005));
+    assert!(said(7.51).contains("contradict"), "{}", said(7.51));
+}
+
 /// Half the pixels: marks of photos of half the size.
 #[test]
 fn marks_of_photos_of_another_size_are_refused() {
