@@ -170,12 +170,13 @@ fn brightons_lines_are_as_sure_as_what_is_seen() {
     let photos = |report: &Value| report["photos"].as_array().expect("photos").clone();
     let (mut held, mut compared) = (0, 0);
     for (photo, other) in photos(&here).iter().zip(&photos(&there)) {
-        // By NumPy from reconstruction.json: sqrt(sum q C q) / sum q², C = 3 / 14 sum r r'.
+        // By NumPy from reconstruction.json: sqrt(sum q C q) / sum q², C = 3 / 14 sum r r' (1.2570), drawn to its mean by 2 of
+        // 14 / 3 + 2.
         if photo["fitted"].is_null() {
             continue;
         }
         let world = number(&photo["uncertainty"]["parts_percent"]["world"]);
-        assert!((world - 1.2570).abs() < 0.001, "{world}");
+        assert!((world - 1.1548).abs() < 0.001, "{world}");
         let not_counted = &photo["uncertainty"]["not_counted"];
         assert_eq!(*not_counted, serde_json::json!(["pose", "lens"]));
         for end in ["top", "bottom"] {
