@@ -271,10 +271,14 @@ fn are_shares(curves: &[RawCurve]) -> bool {
         && points().all(|point| !point.percent_sign)
 }
 
-/// Refuses what may be percents up to 1, as the name of their column says, or shares of 1.
+/// Refuses what may be percents, as the name of their column says, or shares of 1. What ends at 1 is shares: no pile is measured up to
+/// what 1 % of it passes, and spreadsheets write cells that show percents so.
 fn refuse_percents_below_1(curves: &[RawCurve], name: &str) -> Result<(), Fault> {
     let points = || curves.iter().flat_map(|curve| &curve.points);
     let top = points().map(|point| point.percent).fold(0.0, f64::max);
+    if top >= 1.0 {
+        return Ok(());
+    }
     let last = points().max_by(|a, b| a.percent.total_cmp(&b.percent));
     let what = format!("column '{name}' says percent, and ends at {top}, as shares of 1 do");
     let remedy = "write % signs behind percents, or call the column 'passing, share of 1'";
