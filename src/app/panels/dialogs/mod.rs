@@ -83,12 +83,8 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             .open(&mut stays)
             .collapsible(false)
             .resizable(false)
-            // What grows while one types grows downwards: nothing moves away from under the mouse.
-            .pivot(egui::Align2::CENTER_TOP)
-            .default_pos(
-                context.content_rect().center_top()
-                    + egui::vec2(0.0, 0.2 * context.content_rect().height()),
-            )
+            .pivot(egui::Align2::CENTER_CENTER)
+            .default_pos(context.content_rect().center())
             .show(context, |ui| {
                 let wide = matches!(asking, Asking::Georeference | Asking::FromPhotos);
                 let width = match asking {
