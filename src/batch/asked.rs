@@ -30,17 +30,43 @@ pub enum Step {
 pub struct StepOption {
     /// The key in SEASON.toml; the command has it as `--key`.
     pub key: &'static str,
-    /// What it may be; any text where there are none.
+    /// The words that it may be; any text where there are none.
     pub values: &'static [&'static str],
     /// Whether several values may stand together.
     pub is_list: bool,
+    /// What it is where it is none of the words.
+    pub kind: OptionKind,
 }
+
+/// What a value of an option is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OptionKind {
+    /// A word, and nothing else.
+    Word,
+    /// A file; in SEASON.toml it lies beside that.
+    File,
+    /// A file or folder below that of each flight.
+    OfFlight,
+    /// A share, 0 to [`MOST_SHARE`].
+    Share,
+}
+
+/// No pile has more pores.
+const MOST_SHARE: f64 = 0.9;
 
 const fn one_of(key: &'static str, values: &'static [&'static str]) -> StepOption {
     StepOption {
         key,
         values,
         is_list: false,
+        kind: OptionKind::Word,
+    }
+}
+
+const fn other(key: &'static str, kind: OptionKind) -> StepOption {
+    StepOption {
+        kind,
+        ..one_of(key, &[])
     }
 }
 
@@ -49,6 +75,7 @@ const fn some_of(key: &'static str, values: &'static [&'static str]) -> StepOpti
         key,
         values,
         is_list: true,
+        kind: OptionKind::Word,
     }
 }
 
@@ -100,14 +127,16 @@ impl Step {
             one_of("engine", &["learned", "classical"]),
             one_of("shape", &["calibrated", "breadth", "circle"]),
             some_of("also", &["coco", "labelme", "cvat", "geojson", "tiff"]),
-            // Below the folder of each flight.
-            one_of("masks", &[]),
+            other("masks", OptionKind::OfFlight),
             some_of("steps", &["edges", "engine", "pores", "fines", "none"]),
-            one_of("porosity", &[]),
-            one_of("tail", &[]),
+            other("porosity", OptionKind::Share),
+            StepOption {
+                values: &["swebrec"],
+                ..other("tail", OptionKind::File)
+            },
         ];
         const PSD: [StepOption; 3] = [
-            one_of("reference", &[]),
+            other("reference", OptionKind::File),
             one_of("model", &["swebrec", "swebrec5", "rosin-rammler", "ggs"]),
             one_of("merge", &["equal", "area", "mass"]),
         ];
@@ -224,12 +253,12 @@ impl Asked {
         }
         let wrong = values.iter().find(|value| {
             value.is_empty()
-                || !option.values.is_empty() && !option.values.contains(&value.as_str())
+                || option.kind == OptionKind::Word && !option.values.contains(&value.as_str())
         });
         if let Some(wrong) = wrong {
-            let all = match option.values.is_empty() {
-                true => "a name".to_owned(),
-                false => format!("one of {}", option.values.join(", ")),
+            let all = match option.kind {
+                OptionKind::Word => format!("one of {}", option.values.join(", ")),
+                OptionKind::File | OptionKind::OfFlight | OptionKind::Share => "a name".to_owned(),
             };
             return Err(format!("{name}.{key} is '{wrong}', not {all}"));
         }
@@ -254,26 +283,28 @@ impl Asked {
                     .to_owned(),
             );
         }
-        for said in self
-            .steps
-            .iter()
-            .filter(|said| said.step == Step::Delineate)
-        {
+        for said in &self.steps {
             if said.options.contains_key("masks") && said.options.contains_key("engine") {
                 return Err(
                     "delineate.masks is in place of an engine: leave delineate.engine out"
                         .to_owned(),
                 );
             }
-            let porosity = said.options.get("porosity").into_iter().flatten();
-            let is_share = |text: &str| {
-                text.parse()
-                    .is_ok_and(|share: f64| (0.0..=0.9).contains(&share))
-            };
-            if let Some(wrong) = porosity.into_iter().find(|text| !is_share(text)) {
-                return Err(format!(
-                    "delineate.porosity is '{wrong}', no share from 0 to 0.9"
-                ));
+            for option in said.step.options() {
+                if option.kind != OptionKind::Share {
+                    continue;
+                }
+                let is_share = |text: &str| {
+                    let share: Result<f64, _> = text.parse();
+                    share.is_ok_and(|share| (0.0..=MOST_SHARE).contains(&share))
+                };
+                let mut values = said.options.get(option.key).into_iter().flatten();
+                if let Some(wrong) = values.find(|text| !is_share(text)) {
+                    let (step, key) = (said.step.as_str(), option.key);
+                    return Err(format!(
+                        "{step}.{key} is '{wrong}', no share from 0 to {MOST_SHARE}"
+                    ));
+                }
             }
         }
         self.length_unit().map(|_| ())

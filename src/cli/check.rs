@@ -92,9 +92,7 @@ fn look_at(
     let (flight, looked_up) = (opened.flight.clone(), opened.looked_up.clone());
     let limits = Limits::default();
     let mut review = Review::of_scales(flight, looked_up, &limits, progress).map_err(at)?;
-    let evidence = &review.looked_up().evidence;
-    let compared = opening::compare_pixels(&opened.flight, &opened.photo_files, evidence, progress);
-    let compared = compared.map_err(at)?;
+    let compared = opening::compare_pixels(&review, &opened.photo_files, progress).map_err(at)?;
     opening::take_compared(&mut review, &compared);
     let has_colours = !opened.flight.parts().surface.colors().is_empty();
     if !has_colours {
@@ -115,12 +113,12 @@ fn look_at(
             .iter()
             .filter(|doubt| doubt.is_of_pixels() || matches!(doubt, Doubt::FileUnreadable(_)));
         warnings.extend(of_pixels.map(|doubt| format!("photo '{name}': {doubt}")));
-        // Writing into a text does not fail.
         let together = compared.together.iter().find(|(of, _)| *of == index);
         let together = together.map(|(_, together)| together.in_words());
         let said = [has_colours.then_some(said), together];
         let said: Vec<String> = said.into_iter().flatten().collect();
         if !said.is_empty() {
+            // Writing into a text does not fail.
             let _ = writeln!(text, "{name}  {}", said.join("; "));
         }
     }

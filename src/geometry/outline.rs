@@ -20,6 +20,17 @@ pub fn extent(places: &[DVec2]) -> [DVec2; 2] {
     })
 }
 
+/// Twice the area within a ring of corners, positive where they run counter-clockwise.
+pub fn twice_signed_area(corners: &[DVec2]) -> f64 {
+    let Some(&from) = corners.first() else {
+        return 0.0;
+    };
+    // From its first corner: squares of UTM coordinates would lose the digits.
+    let pairs = corners.windows(2);
+    let twice = pairs.map(|pair| (pair[0] - from).perp_dot(pair[1] - from));
+    twice.sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -8,6 +8,7 @@ use glam::DVec2;
 
 use super::{Change, FINES, LabelImage, NOT_ROCK, Outlines, Painting, spans_within};
 use crate::fault::Fault;
+use crate::geometry::{extent, twice_signed_area};
 
 /// Pieces of fewer pixels than this are the stroke's own raggedness.
 const LEAST_PIECE: usize = 8;
@@ -18,15 +19,10 @@ const BRIDGE: f64 = 1.0;
 /// An outline narrower than this in the mean, pixels, is a line.
 const LEAST_WIDTH: f64 = 1.0;
 
-/// The area within an outline over how far apart its corners lie, pixels.
+/// The area within an outline over how far its corners reach, pixels.
 fn mean_width(corners: &[DVec2]) -> f64 {
-    let next = corners.iter().cycle().skip(1);
-    let twice: f64 = corners.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum();
-    let (low, high) = corners.iter().fold(
-        (DVec2::INFINITY, DVec2::NEG_INFINITY),
-        |(low, high), corner| (low.min(*corner), high.max(*corner)),
-    );
-    twice.abs() / 2.0 / low.distance(high).max(f64::MIN_POSITIVE)
+    let [low, high] = extent(corners);
+    twice_signed_area(corners).abs() / 2.0 / low.distance(high).max(f64::MIN_POSITIVE)
 }
 
 impl Outlines {

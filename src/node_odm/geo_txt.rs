@@ -82,7 +82,6 @@ mod tests {
             lens: None,
             time: None,
             size: (4000, 3000),
-            is_turned: false,
             shown: 1,
             place,
             relative_altitude: None,

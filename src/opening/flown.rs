@@ -10,7 +10,7 @@ use crate::files::FileError;
 use crate::flight::Flight;
 use crate::formats::{MissionFile, read_mission};
 use crate::geodesy::{Crs, CrsKind, geoid_height};
-use crate::geometry::median;
+use crate::geometry::median_with_deviation;
 use crate::jobs::Progress;
 use crate::units::LengthUnit;
 
@@ -121,9 +121,8 @@ fn heights_off(
 ) -> Option<String> {
     let residuals = flown.residuals.iter().flatten();
     let mut heights: Vec<f64> = residuals.map(|own| own.offset.z * unit.metres()).collect();
-    let middle = median(&mut heights)?;
-    let mut apart: Vec<f64> = heights.iter().map(|own| (own - middle).abs()).collect();
-    if heights.len() < 3 || middle.abs() < HEIGHT_OFF.max(ALIKE * median(&mut apart)?) {
+    let [middle, apart] = median_with_deviation(&mut heights)?;
+    if heights.len() < 3 || middle.abs() < HEIGHT_OFF.max(ALIKE * apart) {
         return None;
     }
     let place = crs.to_geographic(planned.first()?.pose.center)?;

@@ -50,7 +50,7 @@ pub(crate) fn photo_checks(flight: &Flight, files: &[PhotoFile]) -> (Vec<Finding
     let metadata = MetadataRead {
         looked_at: described.len(),
         telling: described.iter().filter(|(.., m)| tells(m)).count(),
-        turned: described.iter().filter(|(.., m)| m.is_turned).count(),
+        turned: described.iter().filter(|(.., m)| m.shown > 1).count(),
     };
     let mut findings = check_cameras(flight, &described);
     if described.is_empty() {

@@ -12,7 +12,7 @@ use crate::geometry::Bounds;
 use crate::jobs::Progress;
 use crate::surface::Surface;
 use crate::units::LengthUnit;
-use crate::world::{ELLIPSOID, WorldFrame, taken_to_be_in};
+use crate::world::{WorldFrame, is_one_ellipsoidal, taken_to_be_in};
 
 /// Of two surfaces whose files say nothing of their world, one that lies farther away than so many times
 /// the other's size is in another world.
@@ -87,7 +87,8 @@ pub fn volume_base(
 ) -> Result<SecondSurface, FileError> {
     let second = second_surface(path, world, progress)?;
     match &second.other_heights {
-        Some([own, theirs]) if [own, theirs].map(|it| it == ELLIPSOID).contains(&true) => {
+        Some(both) if is_one_ellipsoidal(both) => {
+            let [own, theirs] = both;
             let what = format!(
                 "its heights count from {own}, the flight's from {theirs}, which are tens of metres apart in most places"
             );

@@ -14,8 +14,9 @@ use super::undistorted;
 use crate::camera::{Camera, Pose};
 use crate::surface::Surface;
 
-/// The longer side at which photos are compared, pixels: finer than most clouds.
-const COMPARED: u32 = 512;
+/// The longer side at which photos are compared, pixels: finer than most clouds, and an error of a percent of the distance is one to
+/// three of them.
+pub(super) const COMPARED: u32 = 512;
 
 /// How many vertices are looked at; the standard error of r is under 1/sqrt(n).
 const LOOKED_AT: usize = 200_000;
@@ -75,8 +76,14 @@ impl Flip {
     }
 }
 
+/// A photo, as shot, as it is compared with whatever else: undistorted and small. `None` where its size is not its camera's.
+pub fn for_comparing(photo: &RgbImage, camera: &Camera) -> Option<RgbImage> {
+    let is_its = photo.dimensions() == (camera.width, camera.height);
+    is_its.then(|| undistorted(photo, camera, COMPARED))
+}
+
 impl Agreement {
-    /// Compares a surface's colours with a photo, in the size of its camera and as shot.
+    /// Compares a surface's colours with a photo, which is that of [`for_comparing`].
     ///
     /// # Errors
     /// Why there is nothing to compare.
@@ -84,15 +91,13 @@ impl Agreement {
         surface: &Surface,
         camera: &Camera,
         pose: &Pose,
-        photo: &RgbImage,
+        photo: Option<&RgbImage>,
     ) -> Result<Self, NotComparable> {
         if surface.colors().is_empty() {
             return Err(NotComparable::NoColours);
         }
-        if photo.dimensions() != (camera.width, camera.height) {
-            return Err(NotComparable::OtherSize);
-        }
-        Self::of(surface, camera, pose, &undistorted(photo, camera, COMPARED))
+        let photo = photo.ok_or(NotComparable::OtherSize)?;
+        Self::of(surface, camera, pose, photo)
     }
 
     /// Compares a surface's colours with an undistorted photo of any size.
@@ -323,7 +328,12 @@ mod tests {
             Err(NotComparable::OneColour)
         );
         assert_eq!(
-            Agreement::of_photo(&surface, &camera, &pose, &black),
+            Agreement::of_photo(
+                &surface,
+                &camera,
+                &pose,
+                for_comparing(&black, &camera).as_ref()
+            ),
             Err(NotComparable::OtherSize)
         );
         let cloud = Cloud {

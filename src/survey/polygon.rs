@@ -4,7 +4,7 @@ use glam::DVec2;
 use robust::{Coord, orient2d};
 
 use super::SurveyError;
-use crate::geometry::surrounds;
+use crate::geometry::{surrounds, twice_signed_area};
 
 /// The most corners of a polygon: every side is compared with every other.
 pub const MOST_CORNERS: usize = 2000;
@@ -212,17 +212,6 @@ fn touch(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
     let crosses =
         |one: f64, other: f64| (one >= 0.0 && other <= 0.0) || (one <= 0.0 && other >= 0.0);
     crosses(side(a, b, c), side(a, b, d)) && crosses(side(c, d, a), side(c, d, b))
-}
-
-/// Of a ring of corners, positive where they run counter-clockwise.
-fn twice_signed_area(corners: &[DVec2]) -> f64 {
-    let Some(&from) = corners.first() else {
-        return 0.0;
-    };
-    // From its first corner: squares of UTM coordinates would lose the digits.
-    let pairs = corners.windows(2);
-    let twice = pairs.map(|pair| (pair[0] - from).perp_dot(pair[1] - from));
-    twice.sum()
 }
 
 #[cfg(test)]

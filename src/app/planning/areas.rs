@@ -1,7 +1,6 @@
 //! Areas of the plan that are typed or in a file: what the command's `--area` and `--keep-out` take.
 
-use super::PlanTool;
-use crate::fault::Fault;
+use super::{PlanTool, no_system};
 use crate::geodesy::Crs;
 use crate::jobs::Progress;
 use crate::opening::Areas;
@@ -57,13 +56,7 @@ fn read(
     crs: Option<&str>,
 ) -> Result<(Vec<Polygon>, Vec<String>), String> {
     let crs = || {
-        let stated = crs.ok_or_else(|| {
-            let what = "nobody says in which coordinate system the flight's places are";
-            Fault::new(
-                        what,
-                        "open the flight with a cloud or model that states it, georeference it, or write crs = \"EPSG:...\" under [world] in its flight.toml",
-                    )
-        });
+        let stated = crs.ok_or_else(no_system);
         stated
             .and_then(Crs::understand)
             .map_err(|fault| fault.to_string())

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::made::MadePlan;
+use super::no_system;
 use crate::camera::Camera;
 use crate::exports::{PlanReport, plan_warnings};
 use crate::fault::Fault;
@@ -166,13 +167,7 @@ fn made(
     }));
     let sun = asked.when.as_deref().map(|when| {
         progress.stage("where the sun stands");
-        let crs = over.crs.as_deref().ok_or_else(|| {
-            let what = "nobody says in which coordinate system the flight's places are";
-            Fault::new(
-                        what,
-                        "open the flight with a cloud or model that states it, georeference it, or write crs = \"EPSG:...\" under [world] in its flight.toml",
-                    )
-        });
+        let crs = over.crs.as_deref().ok_or_else(no_system);
         plan.sun_at(when, &Crs::understand(crs?)?)
     });
     let (sun, no_sun) = match sun.transpose() {

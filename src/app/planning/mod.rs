@@ -34,9 +34,18 @@ pub use dragged::{Handle, typed_corners};
 pub use flown::FlownMission;
 pub use made::MadePlan;
 
+use crate::fault::Fault;
 use crate::plan::AskedPlan;
 use crate::render::PlannedLine;
 use crate::state::history::History;
+
+/// What is wrong with a flight whose plan is wanted on the Earth.
+fn no_system() -> Fault {
+    let what = "nobody says in which coordinate system the flight's places are";
+    let remedy = "open the flight with a cloud or model that states it, georeference it, or write crs = \"EPSG:...\" under [world] in its \
+                  flight.toml";
+    Fault::new(what, remedy)
+}
 
 /// The flight plan over a flight's surface.
 #[derive(Default)]

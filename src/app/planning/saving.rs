@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{MadePlan, PlanStep};
+use super::{MadePlan, PlanStep, no_system};
 use crate::command::{Command, Destination};
 use crate::exports::{
     FlightSheet, MissionFormat, PlanReport, flight_sheet, plan_csv, plan_json, write_missions,
@@ -70,15 +70,7 @@ impl State {
                 }
                 None => Ok(()),
             })
-            .and_then(|()| {
-                open.files.crs.as_deref().ok_or_else(|| {
-                    let what = "nobody says in which coordinate system the flight's places are";
-                    Fault::new(
-                        what,
-                        "open the flight with a cloud or model that states it, georeference it, or write crs = \"EPSG:...\" under [world] in its flight.toml",
-                    )
-                })
-            })
+            .and_then(|()| open.files.crs.as_deref().ok_or_else(no_system))
             .and_then(Crs::understand)
             .and_then(|crs| missions(&made.plan, &made.ways, &crs, &told));
         let missions = match missions {

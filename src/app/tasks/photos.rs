@@ -62,18 +62,20 @@ impl State {
         };
         let (number, files) = (open.number, open.files.photo_files.clone());
         let flight = open.flight().clone();
+        let outcomes = open.review.outcomes().clone();
         let steps = self.work.steps_of_a_job();
         let context = self.context.clone();
         let work = move |progress: &Progress| {
-            // Cancelled, nobody looks at any photo.
-            let Ok(mut together) = PhotosTogether::new(&flight, &files, progress) else {
+            // Cancelled, nobody is told anything: what all say together is known behind the last one.
+            let Ok(mut together) = PhotosTogether::new(&flight, &outcomes, &files, progress) else {
                 return Vec::new();
             };
             progress.stage("reading photos");
             let photos = &flight.parts().photos;
+            let has_colours = !flight.parts().surface.colors().is_empty();
             for (index, (photo, file)) in photos.iter().zip(files.iter()).enumerate() {
                 if progress.advance(index as u64, photos.len() as u64).is_err() {
-                    break;
+                    return Vec::new();
                 }
                 let Some(path) = &file.path else {
                     continue;
@@ -83,39 +85,33 @@ impl State {
                 let metadata = photo_metadata::read_file(path).ok();
                 let time = metadata.and_then(|metadata| metadata.time);
                 let read = read_photo(path);
-                if let Ok(large) = &read {
-                    together.take(&flight, index, large, progress);
-                }
-                let thumbnail = match read {
-                    Ok(large) => Thumbnail {
-                        flight: number,
-                        photo: index,
-                        small: Some(color_image(&as_scaled(
-                            &large,
-                            camera,
-                            image,
-                            ROW_THUMBNAIL,
-                        ))),
-                        image: Some(PhotoImage::new(
-                            &undistorted(&large, camera, THUMBNAIL).convert(),
-                        )),
-                        colours: Colours::of_photo(&flight, index, &large),
-                        time,
+                let large = read.as_ref().ok();
+                let is_compared = has_colours || together.wants(index);
+                let small = large.filter(|_| is_compared);
+                let small = small.and_then(|large| picture::for_comparing(large, camera));
+                let thumbnail = Thumbnail {
+                    flight: number,
+                    photo: index,
+                    small: large
+                        .map(|large| color_image(&as_scaled(large, camera, image, ROW_THUMBNAIL))),
+                    image: large.map(|large| {
+                        PhotoImage::new(&undistorted(large, camera, THUMBNAIL).convert())
+                    }),
+                    colours: match &read {
+                        Ok(_) => Colours::of_photo(&flight, index, small.as_ref()),
+                        Err(why) => Colours::Unreadable(why.clone()),
                     },
-                    Err(why) => Thumbnail {
-                        flight: number,
-                        photo: index,
-                        small: None,
-                        image: None,
-                        colours: Colours::Unreadable(why),
-                        time,
-                    },
+                    time,
                 };
                 // Waits until the window has taken some; a cancelled job gives up.
                 if !steps.offer(|state: &mut Self| state.take_thumbnail(thumbnail), progress) {
-                    break;
+                    return Vec::new();
                 }
                 context.request_repaint();
+                // What takes longer comes behind what is seen.
+                if let Some(small) = &small {
+                    together.take(&flight, index, small, progress);
+                }
             }
             together.found(&flight)
         };

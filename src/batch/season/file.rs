@@ -37,7 +37,7 @@ use toml::Value;
 use toml::de::DeTable;
 
 use super::{Season, Source};
-use crate::asked::{Asked, Step};
+use crate::asked::{Asked, OptionKind, Step};
 use crate::fault::Fault;
 use crate::flight::Date;
 use crate::toml_text::{key_line, nth_key_line, refuse_unknown_keys, toml_fault};
@@ -144,24 +144,24 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Season, Fault> {
         };
         for (key, value) in options {
             let wrong = |what: String| at(name, key, what, "correct or remove it");
+            // Which key is unknown is said where it is set.
+            let option = step.options().iter().find(|option| option.key == key);
+            let is = |kind: OptionKind| option.is_some_and(|option| option.kind == kind);
             // A share is written as a number, all else as text.
             let number = matches!(value, Value::Float(_) | Value::Integer(_));
-            let number = (number && key == "porosity").then(|| vec![value.to_string()]);
+            let number = (number && is(OptionKind::Share)).then(|| vec![value.to_string()]);
             let mut values = number.or_else(|| texts(value)).ok_or_else(|| {
                 wrong(format!(
                     "{name}.{key} is neither a text nor a list of texts"
                 ))
             })?;
-            let is_path = match (step, key.as_str()) {
-                (Step::Psd, "reference") => true,
-                (Step::Delineate, "tail") => values != ["swebrec"],
-                _ => false,
-            };
-            if is_path {
-                let paths = values.iter().map(|value| below(value));
-                values = paths
-                    .map(|path| path.to_string_lossy().into_owned())
-                    .collect();
+            if is(OptionKind::File) {
+                let is_word = |value: &String| {
+                    option.is_some_and(|option| option.values.contains(&value.as_str()))
+                };
+                for value in values.iter_mut().filter(|value| !is_word(value)) {
+                    *value = below(value).to_string_lossy().into_owned();
+                }
             }
             asked.set(step, key, values).map_err(wrong)?;
         }

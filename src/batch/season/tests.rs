@@ -1,7 +1,7 @@
 use std::fs;
 
 use super::*;
-use crate::asked::Step;
+use crate::asked::{OptionKind, Step};
 
 const SEASON: &str = r#"format = 1
 name = "North"
@@ -64,8 +64,8 @@ fn a_season_says_what_is_done() {
 fn keys_are_those_of_the_steps() {
     for step in Step::ALL {
         for option in step.options() {
-            let value = match option.key {
-                "porosity" => "0.4",
+            let value = match option.kind {
+                OptionKind::Share => "0.4",
                 _ => option.values.first().unwrap_or(&"x"),
             };
             let text = format!(

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 
-use crate::batch::{AskedStep, FlightTold, Step};
+use crate::batch::{AskedStep, FlightTold, OptionKind, Step};
 use crate::cli::check::check_of;
 use crate::cli::export::export_of;
 use crate::cli::flight_arguments::FlightArguments;
@@ -98,12 +98,13 @@ fn words(asked: &AskedStep, told: &FlightTold) -> Vec<Vec<OsString>> {
         after.push("--force".into());
     }
     for (key, values) in &asked.options {
-        match (asked.step, key.as_str()) {
+        let option = asked.step.options().iter().find(|option| option.key == key);
+        match option.map(|option| option.kind) {
             // It is a file to read, not a word.
-            (Step::Psd, "reference") => {}
-            (Step::Delineate, "masks") => {
-                let masks = values.iter().map(|name| beside(&told.flight, name));
-                after.extend(masks.flat_map(|masks| flag("--masks", masks.into())));
+            _ if asked.step == Step::Psd && key == "reference" => {}
+            Some(OptionKind::OfFlight) => {
+                let files = values.iter().map(|name| beside(&told.flight, name));
+                after.extend(files.flat_map(|file| flag(&format!("--{key}"), file.into())));
             }
             _ => after.extend(flag(&format!("--{key}"), values.join(",").into())),
         }
@@ -266,8 +267,8 @@ mod tests {
         let mut tried = 0;
         for step in Step::ALL {
             for option in step.options() {
-                let free = match option.key {
-                    "porosity" => ["0.4"],
+                let free = match option.kind {
+                    OptionKind::Share => ["0.4"],
                     _ => ["name"],
                 };
                 let values = match option.values.is_empty() {

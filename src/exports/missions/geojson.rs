@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use fragscale_core::plan::{Above, Finish, Height, LostSignal, Mission};
+use fragscale_core::plan::{Above, Height, LostSignal, Mission};
 
 use crate::fault::Fault;
 
@@ -134,18 +134,8 @@ pub(super) fn bytes(mission: &Mission) -> Result<Vec<u8>, Fault> {
         speed_m_per_s: mission.speed,
         safe_height_m: mission.safe_height,
         return_height_m: mission.return_height,
-        finish: match mission.finish {
-            Finish::ReturnHome => "return home",
-            Finish::Hover => "hover",
-            Finish::Land => "land",
-            Finish::FirstStop => "first stop",
-        },
-        lost_signal: mission.lost_signal.map(|lost| match lost {
-            LostSignal::ReturnHome => "return home",
-            LostSignal::Hover => "hover",
-            LostSignal::Land => "land",
-            LostSignal::GoOn => "go on",
-        }),
+        finish: mission.finish.as_str(),
+        lost_signal: mission.lost_signal.map(LostSignal::as_str),
         drone: mission.drone.map(|codes| Drone {
             drone: codes.drone,
             drone_sub: codes.drone_sub,

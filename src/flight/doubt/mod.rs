@@ -308,11 +308,7 @@ impl Doubt {
     /// Whether the photo does not stand where one of this surface can, or does not show it: its scale
     /// is that of something else.
     pub fn is_of_the_pile(&self) -> bool {
-        let is_of_place = matches!(
-            self,
-            Self::FarFromSurface { .. } | Self::UnderSurface | Self::OtherDistance { .. }
-        );
-        is_of_place || self.is_of_colours()
+        matches!(self, Self::FarFromSurface { .. } | Self::UnderSurface) || self.is_of_pixels()
     }
 
     /// Whether the photo's colours say it.
@@ -320,7 +316,7 @@ impl Doubt {
         matches!(self, Self::OtherColours { .. } | Self::Flipped { .. })
     }
 
-    /// Whether what the photo shows says it.
+    /// Whether what the photo shows says it: its colours, or its stones.
     pub fn is_of_pixels(&self) -> bool {
         self.is_of_colours() || matches!(self, Self::OtherDistance { .. })
     }

@@ -92,28 +92,21 @@ pub(super) fn read(text: &str) -> Result<MissionFile, Fault> {
         );
         return Err(Fault::new(what, "read it with a newer fragscale"));
     }
-    let finish = match file.finish.as_str() {
-        "return home" => Finish::ReturnHome,
-        "hover" => Finish::Hover,
-        "land" => Finish::Land,
-        "first stop" => Finish::FirstStop,
-        other => {
-            let what = format!("\"finish\" is \"{}\"", shown(other));
-            let remedy = "write return home, hover, land or first stop";
-            return Err(Fault::new(what, remedy));
-        }
-    };
-    let lost_signal = match file.lost_signal.as_deref() {
-        None => None,
-        Some("return home") => Some(LostSignal::ReturnHome),
-        Some("hover") => Some(LostSignal::Hover),
-        Some("land") => Some(LostSignal::Land),
-        Some("go on") => Some(LostSignal::GoOn),
-        Some(other) => {
-            let what = format!("\"lost_signal\" is \"{}\"", shown(other));
-            return Err(Fault::new(what, "write return home, hover, land or go on"));
-        }
-    };
+    let finish = Finish::ALL
+        .into_iter()
+        .find(|own| own.as_str() == file.finish);
+    let finish = finish.ok_or_else(|| {
+        let what = format!("\"finish\" is \"{}\"", shown(&file.finish));
+        Fault::new(what, "write return home, hover, land or first stop")
+    })?;
+    let lost_signal = file.lost_signal.as_deref().map(|lost| {
+        let found = LostSignal::ALL.into_iter().find(|own| own.as_str() == lost);
+        found.ok_or_else(|| {
+            let what = format!("\"lost_signal\" is \"{}\"", shown(lost));
+            Fault::new(what, "write return home, hover, land or go on")
+        })
+    });
+    let lost_signal = lost_signal.transpose()?;
     let drone = file.drone.map(|codes| DroneCodes {
         drone: codes.drone,
         drone_sub: codes.drone_sub,

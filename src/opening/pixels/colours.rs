@@ -1,5 +1,7 @@
 //! Whether a photo's colours are those of the surface.
 
+use image::RgbImage;
+
 use crate::flight::{Doubt, Flight};
 use crate::picture::{Agreement, Mismatch};
 
@@ -41,14 +43,14 @@ impl Colours {
         })
     }
 
-    /// Of one photo of the flight, with its pixels as shot.
-    pub fn of_photo(flight: &Flight, photo: usize, pixels: &image::RgbImage) -> Self {
+    /// Of one photo of the flight, which is that of [`for_comparing`](crate::picture::for_comparing).
+    pub fn of_photo(flight: &Flight, photo: usize, small: Option<&RgbImage>) -> Self {
         let parts = flight.parts();
         let Some(posed) = parts.photos.get(photo) else {
             return Self::Not("there is no such photo".to_owned());
         };
         let camera = flight.camera(posed);
-        match Agreement::of_photo(&parts.surface, camera, &posed.pose, pixels) {
+        match Agreement::of_photo(&parts.surface, camera, &posed.pose, small) {
             Ok(agreement) => Self::Compared(agreement),
             Err(why) => Self::Not(why.to_string()),
         }

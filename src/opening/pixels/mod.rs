@@ -15,12 +15,13 @@ pub use colours::Colours;
 pub use together::{PhotosTogether, Together};
 
 use crate::fault::Fault;
-use crate::flight::{ColoursFound, Evidence, Flight, Review, TogetherFound};
+use crate::flight::{ColoursFound, Evidence, Review, TogetherFound};
 use crate::jobs::Progress;
 use crate::photo_files::PhotoFile;
+use crate::picture::for_comparing;
 
 /// What was found, each with the photo's place in the flight.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct ComparedPixels {
     /// Of those whose colours nobody had compared.
     pub colours: Vec<(usize, Colours)>,
@@ -28,26 +29,26 @@ pub struct ComparedPixels {
     pub together: Vec<(usize, Together)>,
 }
 
-/// Reads the photos and compares them, as far as nobody has yet by `evidence`, whose list like `files` is parallel to the
-/// flight's photos.
+/// Reads the photos of a review's flight and compares them, as far as nobody has yet; `files` are parallel to its photos.
 ///
 /// # Errors
-/// Where the surface cannot be met, or the work was cancelled.
+/// Where the work was cancelled.
 pub fn compare_pixels(
-    flight: &Flight,
+    review: &Review,
     files: &[PhotoFile],
-    evidence: &[Evidence],
     progress: &Progress,
 ) -> Result<ComparedPixels, Fault> {
+    let (flight, evidence) = (review.flight(), &review.looked_up().evidence);
     let parts = flight.parts();
     let why_no_colours = match (parts.surface.is_part(), parts.surface.colors().is_empty()) {
         (true, _) => Some("not looked at: only a part of the surface was read"),
         (false, true) => Some("the surface has no colours"),
         (false, false) => None,
     };
+    // They are found all at once, or not yet.
     let is_new = |evidence: &Evidence| evidence.together == TogetherFound::NotCompared;
-    let mut together = match evidence.iter().any(is_new) {
-        true => PhotosTogether::new(flight, files, progress)?,
+    let mut together = match evidence.iter().all(is_new) {
+        true => PhotosTogether::new(flight, review.outcomes(), files, progress)?,
         false => PhotosTogether::default(),
     };
     progress.stage("comparing photos");
@@ -55,23 +56,24 @@ pub fn compare_pixels(
     for (index, (file, evidence)) in files.iter().zip(evidence).enumerate() {
         progress.advance(index as u64, parts.photos.len() as u64)?;
         let wants_colours = evidence.colours == ColoursFound::NotCompared;
-        let of_colours = match why_no_colours.filter(|_| !together.wants(index)) {
-            Some(why) => Colours::Not(why.to_owned()),
-            None if !wants_colours && !together.wants(index) => continue,
-            None => match file.pixels() {
-                None => Colours::Not("no image file".to_owned()),
-                Some(Ok(pixels)) => {
-                    together.take(flight, index, &pixels, progress);
-                    match why_no_colours {
-                        Some(why) => Colours::Not(why.to_owned()),
-                        None => Colours::of_photo(flight, index, &pixels),
-                    }
+        let is_read = together.wants(index) || wants_colours && why_no_colours.is_none();
+        let found = match is_read.then(|| file.pixels()) {
+            None => Colours::Not(why_no_colours.unwrap_or_default().to_owned()),
+            Some(None) => Colours::Not("no image file".to_owned()),
+            Some(Some(Err(error))) => Colours::Unreadable(error.fault.to_string()),
+            Some(Some(Ok(pixels))) => {
+                let small = for_comparing(&pixels, flight.camera(&parts.photos[index]));
+                if let Some(small) = &small {
+                    together.take(flight, index, small, progress);
                 }
-                Some(Err(error)) => Colours::Unreadable(error.fault.to_string()),
-            },
+                match wants_colours {
+                    true => Colours::of_photo(flight, index, small.as_ref()),
+                    false => continue,
+                }
+            }
         };
         if wants_colours {
-            colours.push((index, of_colours));
+            colours.push((index, found));
         }
     }
     Ok(ComparedPixels {
@@ -89,8 +91,7 @@ pub fn compare_all_pixels(
     files: &[PhotoFile],
     progress: &Progress,
 ) -> Result<(), Fault> {
-    let evidence = &review.looked_up().evidence;
-    let compared = compare_pixels(review.flight(), files, evidence, progress)?;
+    let compared = compare_pixels(review, files, progress)?;
     take_compared(review, &compared);
     Ok(())
 }

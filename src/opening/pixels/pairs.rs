@@ -5,12 +5,12 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 
 use crate::fault::Fault;
-use crate::flight::Flight;
+use crate::flight::{Flight, Outcome};
 use crate::geometry::median;
 use crate::jobs::Progress;
 use crate::photo_files::PhotoFile;
 use crate::picture::Parallax;
-use crate::scale::{FieldGrid, ImageKind};
+use crate::scale::{Corner, FieldGrid, ImageKind};
 
 /// Each photo is compared with so many: one may be of other light, or have its own error.
 const EACH: usize = 2;
@@ -36,25 +36,25 @@ const LOOKS: FieldGrid = FieldGrid {
 /// The pairs, the earlier photo first; each once.
 pub(super) fn pairs(
     flight: &Flight,
+    outcomes: &[Outcome],
     files: &[PhotoFile],
     progress: &Progress,
 ) -> Result<Vec<[usize; 2]>, Fault> {
     let parts = flight.parts();
     progress.stage("looking which photos are beside each other");
     let mut shown: Vec<Vec<DVec3>> = Vec::new();
-    for (index, (photo, file)) in parts.photos.iter().zip(files).enumerate() {
+    for (index, (file, outcome)) in files.iter().zip(outcomes).enumerate() {
         progress.advance(index as u64, parts.photos.len() as u64)?;
-        let looked = file
-            .path
-            .is_some()
-            .then(|| flight.field(photo, ImageKind::Undistorted, LOOKS, progress));
-        // What shows no surface is beside nothing; whether the work was cancelled the next round asks.
-        shown.push(
-            looked
-                .and_then(Result::ok)
-                .map(|field| field.points())
-                .unwrap_or_default(),
-        );
+        shown.push(match (&file.path, between_corners(outcome)) {
+            (None, _) => Vec::new(),
+            (_, Some(points)) => points,
+            // What shows no surface is beside nothing; whether the work was cancelled the next round asks.
+            (_, None) => {
+                let photo = &parts.photos[index];
+                let field = flight.field(photo, ImageKind::Undistorted, LOOKS, progress);
+                field.map(|field| field.points()).unwrap_or_default()
+            }
+        });
     }
     let mut pairs = BTreeSet::new();
     for (index, points) in shown.iter().enumerate() {
@@ -64,6 +64,30 @@ pub(super) fn pairs(
         }
     }
     Ok(pairs.into_iter().collect())
+}
+
+/// Points between a photo's corners, which the flight knows without another ray; `None` where a corner has none.
+fn between_corners(outcome: &Outcome) -> Option<Vec<DVec3>> {
+    let corners = outcome.scale()?.corners.each_ref().map(Corner::point);
+    let [
+        Some(top_left),
+        Some(top_right),
+        Some(bottom_right),
+        Some(bottom_left),
+    ] = corners
+    else {
+        return None;
+    };
+    let share = |place: u32, count: u32| (f64::from(place) + 0.5) / f64::from(count);
+    let point = |(column, row): (u32, u32)| {
+        let across = share(column, LOOKS.columns);
+        let top = top_left.lerp(top_right, across);
+        top.lerp(
+            bottom_left.lerp(bottom_right, across),
+            share(row, LOOKS.rows),
+        )
+    };
+    Some(LOOKS.cells().map(point).collect())
 }
 
 /// The photos beside one of which these points are known.

@@ -6,7 +6,7 @@ use image::RgbImage;
 
 use super::pairs::pairs;
 use crate::fault::Fault;
-use crate::flight::{Doubt, Flight, TogetherFound};
+use crate::flight::{Doubt, Flight, Outcome, TogetherFound};
 use crate::jobs::Progress;
 use crate::photo_files::PhotoFile;
 use crate::picture::{PairSight, Patches, SeenAt, Sighted, SmallPhoto, seen_at};
@@ -82,14 +82,19 @@ pub struct PhotosTogether {
 
 impl PhotosTogether {
     /// Chooses which photos of a flight are compared, of those whose files are there: none over a surface of which only a
-    /// part was read.
+    /// part was read. `outcomes` are its scales ([`Flight::scales`]).
     ///
     /// # Errors
     /// Where the work was cancelled.
-    pub fn new(flight: &Flight, files: &[PhotoFile], progress: &Progress) -> Result<Self, Fault> {
+    pub fn new(
+        flight: &Flight,
+        outcomes: &[Outcome],
+        files: &[PhotoFile],
+        progress: &Progress,
+    ) -> Result<Self, Fault> {
         let pairs = match flight.parts().surface.is_part() {
             true => Vec::new(),
-            false => pairs(flight, files, progress)?,
+            false => pairs(flight, outcomes, files, progress)?,
         };
         Ok(Self {
             sights: vec![None; pairs.len()],
@@ -103,17 +108,14 @@ impl PhotosTogether {
         self.pairs.iter().any(|pair| pair.contains(&photo))
     }
 
-    /// Takes the pixels of a photo as shot, and compares it with those beside it that were read before.
-    pub fn take(&mut self, flight: &Flight, photo: usize, pixels: &RgbImage, progress: &Progress) {
+    /// Takes a photo, which is that of [`for_comparing`](crate::picture::for_comparing), and compares it with those beside it that were
+    /// read before.
+    pub fn take(&mut self, flight: &Flight, photo: usize, small: &RgbImage, progress: &Progress) {
         if !self.wants(photo) {
             return;
         }
-        // A photo of another size than its camera's is doubted for that.
-        let Some(small) = SmallPhoto::of(pixels, flight.camera(&flight.parts().photos[photo]))
-        else {
-            return;
-        };
         let posed = &flight.parts().photos[photo];
+        let small = SmallPhoto::of(small, flight.camera(posed));
         let (grid, image) = (Patches::grid(&small), ImageKind::Undistorted);
         // What shows no surface is compared with nothing.
         let Ok(field) = flight.field(posed, image, grid, progress) else {
@@ -190,5 +192,41 @@ fn sighted<'a>(flight: &'a Flight, photo: usize, small: &'a SmallPhoto) -> Sight
         photo: small,
         camera: flight.camera(posed),
         pose: &posed.pose,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn elsewhere(there: f64) -> PairSight {
+        PairSight::Elsewhere(SeenAt {
+            factor: 1.1,
+            there,
+            here: 0.0,
+            is_elsewhere: true,
+        })
+    }
+
+    /// One of two pairs may be wrong by the other photo's pose.
+    #[test]
+    fn more_pairs_than_not_speak_against_a_photo() {
+        let there = PairSight::There(0.001);
+        for (pairs, wanted) in [
+            (vec![(1, elsewhere(0.3)), (2, there)], (2, there)),
+            (
+                vec![(1, elsewhere(0.3)), (2, PairSight::Unclear)],
+                (1, elsewhere(0.3)),
+            ),
+            (
+                vec![(1, elsewhere(0.2)), (2, there), (3, elsewhere(0.4))],
+                (3, elsewhere(0.4)),
+            ),
+            (vec![(1, PairSight::There(0.004)), (2, there)], (2, there)),
+            (vec![(4, PairSight::Unclear)], (4, PairSight::Unclear)),
+        ] {
+            assert_eq!(said_by(&pairs), Some(wanted), "{pairs:?}");
+        }
+        assert_eq!(said_by(&[]), None);
     }
 }

@@ -12,7 +12,12 @@ use crate::geodesy::{
 use crate::units::LengthUnit;
 
 /// What heights above an ellipsoid count from, in words.
-pub(crate) const ELLIPSOID: &str = "the ellipsoid";
+const ELLIPSOID: &str = "the ellipsoid";
+
+/// Whether heights of which two differ count from the ellipsoid on one side: tens of metres off the other in most places.
+pub(crate) fn is_one_ellipsoidal(both: &[String; 2]) -> bool {
+    both.iter().any(|heights| heights == ELLIPSOID)
+}
 
 /// The system of longitudes and latitudes of which nothing else is said.
 const WGS84: &str = "EPSG:4326";
@@ -197,10 +202,7 @@ impl WorldFrame {
     /// That heights here count from the ellipsoid and there from something else, or the other way round, in words for here and
     /// there; `None` where one of them does not say.
     pub(crate) fn other_heights(&self, there: &Self) -> Option<[String; 2]> {
-        let both = self.heights_apart_from(there)?;
-        both.iter()
-            .any(|heights| heights == ELLIPSOID)
-            .then_some(both)
+        self.heights_apart_from(there).filter(is_one_ellipsoidal)
     }
 
     /// What heights count from here and there, in words, where that is not the same; `None` where one of them does not say. What

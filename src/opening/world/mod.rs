@@ -8,7 +8,7 @@ mod unstated_surface;
 mod way;
 
 pub(crate) use choice::{Known, NoWorld, place_of_flight};
-pub(crate) use frame::{ELLIPSOID, WorldFrame};
+pub(crate) use frame::{WorldFrame, is_one_ellipsoidal};
 pub(crate) use not_on_map::not_on_its_map;
 pub(crate) use unstated_surface::taken_to_be_in;
 pub(crate) use way::Way;

@@ -62,16 +62,6 @@ impl Patches {
             eye: field.pose().center,
         }
     }
-
-    /// How many there are.
-    pub fn len(&self) -> usize {
-        self.patches.len()
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.patches.is_empty()
-    }
 }
 
 /// Where a pixel of the small photo lies on the surface, between the four points of the field around it; `None` where one of them

@@ -1,13 +1,11 @@
-//! A photo as it is compared with those beside it: undistorted, small, gray.
+//! A photo as it is compared with those beside it: undistorted, small ([`crate::picture::for_comparing`]), gray.
 
 use glam::DVec2;
 use image::RgbImage;
 
 use crate::camera::Camera;
-use crate::picture::{reduced_size, undistorted};
-
-/// The longer side, pixels: an error of a percent of the distance is one to three of them.
-const COMPARED: u32 = 512;
+use crate::picture::agreement::COMPARED;
+use crate::picture::reduced_size;
 
 /// A photo without its lens and its colours.
 #[derive(Debug, Clone)]
@@ -27,14 +25,10 @@ pub(super) fn shrunk(camera: &Camera) -> f64 {
 }
 
 impl SmallPhoto {
-    /// Of a photo as shot, in the size of its camera; `None` of another one.
-    pub fn of(photo: &RgbImage, camera: &Camera) -> Option<Self> {
-        if photo.dimensions() != (camera.width, camera.height) {
-            return None;
-        }
-        let small = undistorted(photo, camera, COMPARED);
+    /// Of a photo that is ready for comparing, and its camera.
+    pub fn of(small: &RgbImage, camera: &Camera) -> Self {
         let (width, height) = small.dimensions();
-        Some(Self {
+        Self {
             width,
             height,
             shrunk: shrunk(camera),
@@ -49,7 +43,7 @@ impl SmallPhoto {
                     }
                 })
                 .collect(),
-        })
+        }
     }
 
     /// Width and height, pixels.

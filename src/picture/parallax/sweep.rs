@@ -6,7 +6,7 @@ use super::patches::{PIXELS, Patch, Patches, normalised};
 use super::small_photo::shrunk;
 use super::{Sighted, WORTH_SAYING, ray_in};
 use crate::camera::{Camera, Pose};
-use crate::geometry::median;
+use crate::geometry::{median, median_with_deviation};
 
 /// The distance is looked for from so much nearer to so much farther, as the logarithm of the factor: a third nearer, a half farther.
 const FARTHEST: f64 = 0.405;
@@ -42,8 +42,6 @@ pub struct SeenAt {
     pub there: f64,
     /// Their mean correlation where the surface is.
     pub here: f64,
-    /// Of so many patches.
-    pub patches: usize,
     /// Whether that is another place than the surface's, by more than the pixels can be wrong.
     pub is_elsewhere: bool,
 }
@@ -176,10 +174,9 @@ impl<'a> Sweep<'a> {
             .iter()
             .filter(|other| (other.moved - best.moved).abs() > own);
         let mut wrong: Vec<f64> = others.map(Match::weight).collect();
-        let usual = median(&mut wrong)?;
-        let mut deviations: Vec<f64> = wrong.iter().map(|weight| (weight - usual).abs()).collect();
+        let [usual, deviation] = median_with_deviation(&mut wrong)?;
         // Of a normal distribution the median deviation is 0.6745 of the standard one.
-        let deviation = median(&mut deviations)? / 0.6745;
+        let deviation = deviation / 0.6745;
         if best.mean < LEAST_MATCH || best.weight() - usual < clear * deviation {
             return None;
         }
@@ -192,7 +189,6 @@ impl<'a> Sweep<'a> {
             factor: moved.exp(),
             there: best.mean,
             here: here.mean,
-            patches: best.patches,
             is_elsewhere,
         })
     }

@@ -6,6 +6,7 @@ use image::{Rgb, RgbImage};
 use super::*;
 use crate::camera::Distortion;
 use crate::jobs::Progress;
+use crate::picture::for_comparing;
 use crate::scale::{ImageKind, ScaleField};
 use crate::surface::{Cloud, Surface};
 
@@ -84,6 +85,10 @@ fn poses() -> [Pose; 2] {
     ]
 }
 
+fn small(photo: &RgbImage, camera: &Camera) -> SmallPhoto {
+    SmallPhoto::of(&for_comparing(photo, camera).unwrap(), camera)
+}
+
 /// All patches of a photo on a surface.
 fn patches(surface: &Surface, sighted: &Sighted<'_>) -> Patches {
     let (grid, image) = (Patches::grid(sighted.photo), ImageKind::Undistorted);
@@ -102,9 +107,7 @@ fn patches(surface: &Surface, sighted: &Sighted<'_>) -> Patches {
 /// What the two see of a surface, their cameras being taken for others.
 fn sight(surface: &Surface, photos: &[RgbImage; 2], camera: &Camera) -> [Option<SeenAt>; 2] {
     let poses = poses();
-    let small = photos
-        .each_ref()
-        .map(|photo| SmallPhoto::of(photo, camera).unwrap());
+    let small = photos.each_ref().map(|photo| small(photo, camera));
     let sighted = [0, 1].map(|at| Sighted {
         photo: &small[at],
         camera,
@@ -112,7 +115,8 @@ fn sight(surface: &Surface, photos: &[RgbImage; 2], camera: &Camera) -> [Option<
     });
     [0, 1].map(|at| {
         let patches = patches(surface, &sighted[at]);
-        assert!(patches.len() > 500, "{}", patches.len());
+        let count = patches.patches.len();
+        assert!(count > 500, "{count}");
         seen_at(&patches, &sighted[1 - at])
     })
 }
@@ -174,8 +178,8 @@ fn other_photos_tell_nothing() {
     assert_eq!(PairSight::of(a, b), PairSight::Unclear, "{a:?} {b:?}");
     // Of one colour.
     let gray = RgbImage::from_pixel(480, 360, Rgb([90; 3]));
-    let small = SmallPhoto::of(&first, &camera()).unwrap();
-    let plain = SmallPhoto::of(&gray, &camera()).unwrap();
+    let of_first = small(&first, &camera());
+    let plain = small(&gray, &camera());
     let (camera, poses) = (camera(), poses());
     let of = |photo, pose| Sighted {
         photo,
@@ -183,11 +187,11 @@ fn other_photos_tell_nothing() {
         pose,
     };
     let surface = floor(0.0);
-    let of_first = patches(&surface, &of(&small, &poses[0]));
-    assert_eq!(seen_at(&of_first, &of(&plain, &poses[1])), None);
-    assert!(patches(&surface, &of(&plain, &poses[1])).is_empty());
+    let its_patches = patches(&surface, &of(&of_first, &poses[0]));
+    assert_eq!(seen_at(&its_patches, &of(&plain, &poses[1])), None);
+    assert!(patches(&surface, &of(&plain, &poses[1])).patches.is_empty());
     // From one place there is no parallax.
-    assert_eq!(seen_at(&of_first, &of(&small, &poses[0])), None);
+    assert_eq!(seen_at(&its_patches, &of(&of_first, &poses[0])), None);
     // The size of another camera.
-    assert!(SmallPhoto::of(&RgbImage::new(48, 36), &camera).is_none());
+    assert!(for_comparing(&RgbImage::new(48, 36), &camera).is_none());
 }

@@ -15,6 +15,19 @@ pub enum Finish {
 }
 
 impl Finish {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::ReturnHome, Self::Hover, Self::Land, Self::FirstStop];
+
+    /// As missions of ours are written (GeoJSON).
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::ReturnHome => "return home",
+            Self::Hover => "hover",
+            Self::Land => "land",
+            Self::FirstStop => "first stop",
+        }
+    }
+
     /// In words that follow "at the end:".
     pub fn in_words(self) -> &'static str {
         match self {
@@ -40,6 +53,19 @@ pub enum LostSignal {
 }
 
 impl LostSignal {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::ReturnHome, Self::Hover, Self::Land, Self::GoOn];
+
+    /// As missions of ours are written (GeoJSON).
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::ReturnHome => "return home",
+            Self::Hover => "hover",
+            Self::Land => "land",
+            Self::GoOn => "go on",
+        }
+    }
+
     /// In words that follow "where the radio is lost:".
     pub fn in_words(self) -> &'static str {
         match self {

@@ -121,23 +121,26 @@ impl<'a> Matching<'a> {
     }
 
     fn pairs(&self) -> Vec<Option<usize>> {
-        let mut off = DVec3::Z * self.height_off();
-        let mut chosen = self.nearest(off);
         let by_name = self.order_of_names();
+        let mut off = DVec3::Z * self.height_off();
+        let mut chosen = self.matched(off, &by_name);
         for _ in 0..ROUNDS {
-            if self.is_in_order(&chosen, &by_name) {
-                chosen = self.aligned(&chosen, off, &by_name);
-            }
             let Some(next) = self.all_are_off(&chosen).filter(|next| *next != off) else {
                 break;
             };
             off = next;
-            chosen = self.nearest(off);
-        }
-        if self.is_in_order(&chosen, &by_name) {
-            chosen = self.aligned(&chosen, off, &by_name);
+            chosen = self.matched(off, &by_name);
         }
         chosen
+    }
+
+    /// The nearest ones, or, where these follow each other as their names do, those of an alignment.
+    fn matched(&self, off: DVec3, by_name: &[usize]) -> Vec<Option<usize>> {
+        let chosen = self.nearest(off);
+        match self.is_in_order(&chosen, by_name) {
+            true => self.aligned(&chosen, off, by_name),
+            false => chosen,
+        }
     }
 
     /// What a pair costs, squares in parts of the farthest: 1 as far from its plan as it may be; `None` where it is farther.

@@ -82,7 +82,6 @@ mod tests {
             lens: None,
             time: None,
             size: (1, 1),
-            is_turned: false,
             shown: 1,
             place: Some(MeasuredPlace {
                 place: Geographic {

@@ -143,3 +143,26 @@ impl Columns {
         self.seen.clone()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What goes to Split-Desktop stands in front, and only the scales change their place with it.
+    #[test]
+    fn the_scales_for_split_desktop_are_in_front() {
+        let in_front = |pair: ScalePair| -> Vec<&str> {
+            let shown = PHOTO_COLUMNS.iter().filter(|column| column.width.is_some());
+            let front = shown.filter(|column| !is_behind(column, pair));
+            front.map(|column| column.name).collect()
+        };
+        let (fitted, corners) = (in_front(ScalePair::Fitted), in_front(ScalePair::Corners));
+        let scales = |of: &[&'static str]| -> Vec<&'static str> {
+            let is = |name: &&&str| name.ends_with("op") || name.ends_with("ottom");
+            of.iter().filter(is).copied().collect()
+        };
+        assert_eq!(scales(&fitted), ["Fitted top", "Fitted bottom"]);
+        assert_eq!(scales(&corners), ["Top", "Bottom"]);
+        assert_eq!(fitted.len(), corners.len());
+    }
+}

@@ -42,9 +42,7 @@ pub struct PhotoMetadata {
     pub time: Option<String>,
     /// Width and height of the stored pixels.
     pub size: (u32, u32),
-    /// Whether viewers show these pixels turned or mirrored (EXIF's Orientation).
-    pub is_turned: bool,
-    /// EXIF's Orientation, 1 to 8: how viewers show them. 1, as they are stored, where it does not say.
+    /// EXIF's Orientation, 1 to 8: how viewers show these pixels, turned or mirrored. 1, as they are stored, where it does not say.
     pub shown: u32,
     /// Where it was taken.
     pub place: Option<MeasuredPlace>,
@@ -229,7 +227,6 @@ pub fn read(mut input: impl BufRead + Seek) -> Result<PhotoMetadata, Fault> {
         lens: exif.lens,
         time: exif.time,
         size,
-        is_turned: exif.orientation.is_some_and(|turned| turned > 1),
         shown: exif
             .orientation
             .filter(|shown| (1..=8).contains(shown))
