@@ -1,14 +1,6 @@
 //! The similarity between two frames from pairs of positions of which some may be wrong.
 //!
-//! Three pairs make a similarity. Of many minimal samples of three (all, or random ones of a fixed seed) the best ten
-//! are drawn together on the half of the pairs that fits best (the concentration steps of Rousseeuw &
-//! Van Driessen, "A fast algorithm for the minimum covariance determinant estimator", 1999), and the
-//! one whose better half has the least of largest residuals wins (least quantile of squares, Rousseeuw
-//! 1984): nearly half of the pairs may be wrong, of four none. The spread of the good ones follows
-//! from that residual, and then from all that agree. Pairs farther off
-//! than 99.9 % of good ones would be are outliers, of a spread that few pairs tell by Fisher's F; where accuracies
-//! are stated, no pair is one within its accuracy, and none is that is less off than anybody marks or surveys: a
-//! ten-thousandth of the extent, which moves the scale by no more. What is left is fitted again, all together.
+//! Those that agree with each other ([`agreeing`](super::agreeing)) are fitted together by least squares.
 //!
 //! The standard error of the scale. With q the sources and y the targets, both from their weighted
 //! means, and R the rotation, the scale is s = sum(w q·Rᵀy) / sum(w |q|²) (Umeyama 1991, equation 42,
@@ -29,25 +21,12 @@
 
 use glam::{DMat3, DVec3};
 
-use super::student::{length_999, t95};
-use super::umeyama::similarity_of;
+use super::agreeing::{Weighted, agreeing, of_indices, on_a_line};
+use super::student::t95;
 use crate::fault::Fault;
 use crate::geometry::{Similarity, median};
 use crate::numbers::significant_digits;
-use crate::split_mix::SplitMix;
 
-/// Of good residuals' lengths in space, 99.9 % are below this many standard deviations (of one
-/// coordinate): the root of the quantile of chi squared with three degrees of freedom. A tighter cut
-/// would take good ones away and with them the honesty of the standard error.
-const LENGTH_999: f64 = 4.033_142;
-/// Pairs that are off by so much of how far they reach from their middle may be good, however well the others fit.
-const LEAST_OFF: f64 = 1e-4;
-/// And half are below this many.
-const LENGTH_50: f64 = 1.538_172;
-/// As many minimal samples are tried at most.
-const MOST_SAMPLES: usize = 500;
-/// As many of them are drawn together.
-const FINALISTS: usize = 10;
 /// So many degrees of freedom in each direction have the noise of all together.
 const SHARED: f64 = 2.0;
 /// Radians that the rotation about the long axis of the positions may be unsure by (one standard
@@ -131,17 +110,20 @@ pub fn fit(pairs: &[Pair]) -> Result<Fit, Fault> {
     }
     // Everything is counted from the middle: coordinates of the Earth would eat the digits.
     let middle = pairs.iter().map(|pair| pair.target).sum::<DVec3>() / count as f64;
-    let problem = Problem::new(pairs, middle);
-    let best = problem.most_agreed_on().ok_or_else(on_a_line)?;
-    let used = problem.inliers(&best)?;
-    problem.finish(&used, middle)
+    let (weighted, accuracies_are_stated) = weighted(pairs, middle);
+    let used = agreeing(&weighted, accuracies_are_stated)?;
+    finish(&weighted, &used, middle)
 }
 
-fn on_a_line() -> Fault {
-    Fault::new(
-        "the known positions lie on a line, so that the rotation about it is not determined",
-        "add positions beside it, such as ground control points or a crossing strip",
-    )
+/// With targets from the middle, and whether any accuracy is stated: a weight is its inverse square then.
+fn weighted(pairs: &[Pair], middle: DVec3) -> (Vec<Weighted>, bool) {
+    // Pairs without an accuracy beside others are taken to be as good as the others' median.
+    let mut stated: Vec<f64> = pairs.iter().filter_map(|pair| pair.accuracy).collect();
+    let usual = median(&mut stated);
+    let weight = |pair: &Pair| pair.accuracy.or(usual).unwrap_or(1.0).powi(-2);
+    let of_pairs = pairs.iter();
+    let of_pairs = of_pairs.map(|pair| (pair.source, pair.target - middle, weight(pair)));
+    (of_pairs.collect(), usual.is_some())
 }
 
 /// They do lie beside a line; `off` is how far a coordinate is from where the fit has it, world units.
@@ -160,224 +142,75 @@ fn trace(matrix: DMat3) -> f64 {
     matrix.x_axis.x + matrix.y_axis.y + matrix.z_axis.z
 }
 
-/// The pairs with their weights, targets from the middle.
-struct Problem {
-    pairs: Vec<(DVec3, DVec3, f64)>,
-    /// Whether accuracies are stated: then residuals count in them, and a weight is their inverse
-    /// square.
-    has_accuracies: bool,
-    /// Nobody marks or surveys better: no pair with such a residual is wrong.
-    least: f64,
+/// The least squares of the pairs at these indices, and how sure they are.
+fn finish(pairs: &[Weighted], indices: &[usize], middle: DVec3) -> Result<Fit, Fault> {
+    let local = of_indices(pairs, indices).ok_or_else(on_a_line)?;
+    let used: Vec<bool> = (0..pairs.len())
+        .map(|index| indices.contains(&index))
+        .collect();
+    let residuals: Vec<DVec3> = (pairs.iter())
+        .map(|(p, q, _)| *q - local.apply(*p))
+        .collect();
+    let chosen: Vec<(DVec3, DVec3, f64, DVec3)> = (pairs.iter().zip(&residuals))
+        .zip(&used)
+        .filter(|(_, used)| **used)
+        .map(|(((p, q, w), r), _)| (*p, *q, *w, *r))
+        .collect();
+    let total: f64 = chosen.iter().map(|c| c.2).sum();
+    let source = chosen.iter().map(|c| c.0 * c.2).sum::<DVec3>() / total;
+    let target = chosen.iter().map(|c| c.1 * c.2).sum::<DVec3>() / total;
+    let free = 3 * chosen.len() - 7;
+    let covariance = chosen
+        .iter()
+        .map(|c| outer(c.3) * c.2)
+        .fold(DMat3::ZERO, |a, b| a + b)
+        * (3.0 / free as f64);
+    // Of few pairs no direction tells its own noise: all share some of what they have together.
+    let each = free as f64 / 3.0;
+    let together = DMat3::IDENTITY * (trace(covariance) / 3.0);
+    let covariance = (covariance * each + together * SHARED) * (each + SHARED).recip();
+    let rotation = local.rotation;
+    let (mut weighted, mut spread) = (0.0, 0.0);
+    let (mut sources, mut targets) = (DMat3::ZERO, DMat3::ZERO);
+    for (p, q, w, _) in &chosen {
+        let turned = rotation * (*p - source);
+        weighted += w * turned.dot(covariance * turned);
+        spread += w * turned.length_squared();
+        sources += outer(*p - source) * (w * local.scale * local.scale);
+        targets += outer(*q - target) * *w;
+    }
+    let scale_error = weighted.sqrt() / spread / local.scale;
+    // Of one coordinate, of weight 1.
+    let sigma = (trace(covariance) / 3.0).sqrt();
+    let across = beside_the_axis(sources).min(beside_the_axis(targets));
+    let rotation_error = sigma / across;
+    if rotation_error.is_nan() || rotation_error > LARGEST_ROTATION_ERROR {
+        let along = trace(sources).min(trace(targets)).sqrt();
+        return Err(match across > NARROW * along {
+            true => of_another_shape(sigma / (total / chosen.len() as f64).sqrt()),
+            false => on_a_line(),
+        });
+    }
+    if scale_error.is_nan() || scale_error > LARGEST_SCALE_ERROR {
+        return Err(Fault::new(
+            format!(
+                "the known positions give the scale to {:.0} % only",
+                scale_error * 100.0
+            ),
+            "check that they are those of these photos, or add more exact ones",
+        ));
+    }
+    let squares: f64 = chosen.iter().map(|c| c.3.length_squared()).sum();
+    Ok(Fit {
+        similarity: Similarity::new(local.scale, rotation, local.translation + middle),
+        residuals,
+        used,
+        rms: (squares / chosen.len() as f64).sqrt(),
+        scale_error,
+        scale_interval: scale_error * t95(free),
+        rotation_error,
+    })
 }
-
-impl Problem {
-    fn new(pairs: &[Pair], middle: DVec3) -> Self {
-        // Pairs without an accuracy beside others are taken to be as good as the others' median.
-        let mut stated: Vec<f64> = pairs.iter().filter_map(|pair| pair.accuracy).collect();
-        let usual = median(&mut stated);
-        let weight = |pair: &Pair| pair.accuracy.or(usual).unwrap_or(1.0).powi(-2);
-        let pairs: Vec<_> = (pairs.iter())
-            .map(|pair| (pair.source, pair.target - middle, weight(pair)))
-            .collect();
-        let extent = pairs.iter().map(|pair| pair.1.length()).fold(0.0, f64::max);
-        Self {
-            has_accuracies: usual.is_some(),
-            least: LEAST_OFF * extent,
-            pairs,
-        }
-    }
-
-    /// The residuals' lengths, in accuracies where those are stated.
-    fn distances(&self, similarity: &Similarity) -> Vec<f64> {
-        (self.pairs.iter())
-            .map(|(p, q, w)| q.distance(similarity.apply(*p)) * w.sqrt())
-            .collect()
-    }
-
-    fn of_indices(&self, indices: &[usize]) -> Option<Similarity> {
-        let chosen: Vec<_> = (indices.iter())
-            .filter_map(|&index| self.pairs.get(index).copied())
-            .collect();
-        similarity_of(&chosen)
-    }
-
-    /// The size of the half that lets most pairs be wrong (Rousseeuw & Leroy 1987), where three pairs
-    /// make a similarity: all of four, seven of ten, 52 of 100.
-    fn half(&self) -> usize {
-        usize::midpoint(self.pairs.len(), 4).min(self.pairs.len())
-    }
-
-    /// The largest distance in the better half.
-    fn of_better_half(&self, distances: &[f64]) -> f64 {
-        let mut sorted = distances.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        sorted
-            .get(self.half() - 1)
-            .copied()
-            .unwrap_or(f64::INFINITY)
-    }
-
-    /// The similarity with the least residual of the better half.
-    fn most_agreed_on(&self) -> Option<Similarity> {
-        let score = |similarity: &Similarity| self.of_better_half(&self.distances(similarity));
-        let mut found: Vec<(f64, Similarity)> = minimal_samples(self.pairs.len())
-            .filter_map(|three| self.of_indices(&three))
-            .map(|similarity| (score(&similarity), similarity))
-            .collect();
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        found.truncate(FINALISTS);
-        let mut drawn_together: Vec<(f64, Similarity)> = (found.iter())
-            .map(|(_, similarity)| self.concentrated(similarity))
-            .map(|similarity| (score(&similarity), similarity))
-            .collect();
-        drawn_together.append(&mut found);
-        let best = drawn_together
-            .into_iter()
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        best.map(|(_, similarity)| similarity)
-    }
-
-    /// Fits the better half again and again.
-    fn concentrated(&self, start: &Similarity) -> Similarity {
-        let mut similarity = *start;
-        for _ in 0..10 {
-            let distances = self.distances(&similarity);
-            let mut order: Vec<usize> = (0..distances.len()).collect();
-            order.sort_by(|&a, &b| distances[a].total_cmp(&distances[b]));
-            order.truncate(self.half());
-            match self.of_indices(&order) {
-                Some(next) => similarity = next,
-                None => break,
-            }
-        }
-        similarity
-    }
-
-    /// The pairs that agree with a similarity, and with the one that they then make together.
-    fn inliers(&self, best: &Similarity) -> Result<Vec<usize>, Fault> {
-        let count = self.pairs.len();
-        let distances = self.distances(best);
-        let middle = self.of_better_half(&distances);
-        // Few pairs fit too well: the correction of Rousseeuw & Leroy 1987 (p. 202).
-        let correction = match count {
-            3 => f64::INFINITY,
-            _ => 1.0 + 5.0 / (count - 3) as f64,
-        };
-        let stated = if self.has_accuracies { 1.0 } else { 0.0 };
-        let first = (middle / LENGTH_50 * correction).max(stated);
-        let within = |distances: &[f64], far: f64| -> Vec<usize> {
-            let near = |index: &usize| {
-                let weight = self.pairs.get(*index).map_or(1.0, |pair| pair.2);
-                let limit = far.max(self.least * weight.sqrt());
-                distances.get(*index).is_some_and(|d| *d <= limit)
-            };
-            (0..count).filter(near).collect()
-        };
-        let mut used = within(&distances, LENGTH_999 * first);
-        for _ in 0..20 {
-            if used.len() < 3 {
-                break;
-            }
-            let similarity = self.of_indices(&used).ok_or_else(on_a_line)?;
-            let distances = self.distances(&similarity);
-            // The best of many minimal samples fits better than the noise is; all together tell it.
-            let squares: f64 = used
-                .iter()
-                .filter_map(|i| distances.get(*i))
-                .map(|d| d * d)
-                .sum();
-            let free = 3 * used.len() - 7;
-            let spread = (squares / free as f64).sqrt();
-            // What is known beforehand is not estimated from few.
-            let far = (length_999(free) * spread).max(LENGTH_999 * first);
-            let next = within(&distances, far);
-            if next == used {
-                break;
-            }
-            used = next;
-        }
-        if used.len() < 3 || used.len() * 2 < count {
-            return Err(Fault::new(
-                format!(
-                    "only {} of {count} known positions agree with each other",
-                    used.len()
-                ),
-                "check that they are those of these photos",
-            ));
-        }
-        Ok(used)
-    }
-
-    fn finish(&self, indices: &[usize], middle: DVec3) -> Result<Fit, Fault> {
-        let local = self.of_indices(indices).ok_or_else(on_a_line)?;
-        let used: Vec<bool> = (0..self.pairs.len())
-            .map(|index| indices.contains(&index))
-            .collect();
-        let residuals: Vec<DVec3> = (self.pairs.iter())
-            .map(|(p, q, _)| *q - local.apply(*p))
-            .collect();
-        let chosen: Vec<(DVec3, DVec3, f64, DVec3)> = (self.pairs.iter().zip(&residuals))
-            .zip(&used)
-            .filter(|(_, used)| **used)
-            .map(|(((p, q, w), r), _)| (*p, *q, *w, *r))
-            .collect();
-        let total: f64 = chosen.iter().map(|c| c.2).sum();
-        let source = chosen.iter().map(|c| c.0 * c.2).sum::<DVec3>() / total;
-        let target = chosen.iter().map(|c| c.1 * c.2).sum::<DVec3>() / total;
-        let free = 3 * chosen.len() - 7;
-        let covariance = chosen
-            .iter()
-            .map(|c| outer(c.3) * c.2)
-            .fold(DMat3::ZERO, |a, b| a + b)
-            * (3.0 / free as f64);
-        // Of few pairs no direction tells its own noise: all share some of what they have together.
-        let each = free as f64 / 3.0;
-        let together = DMat3::IDENTITY * (trace(covariance) / 3.0);
-        let covariance = (covariance * each + together * SHARED) * (each + SHARED).recip();
-        let rotation = local.rotation;
-        let (mut weighted, mut spread) = (0.0, 0.0);
-        let (mut sources, mut targets) = (DMat3::ZERO, DMat3::ZERO);
-        for (p, q, w, _) in &chosen {
-            let turned = rotation * (*p - source);
-            weighted += w * turned.dot(covariance * turned);
-            spread += w * turned.length_squared();
-            sources += outer(*p - source) * (w * local.scale * local.scale);
-            targets += outer(*q - target) * *w;
-        }
-        let scale_error = weighted.sqrt() / spread / local.scale;
-        // Of one coordinate, of weight 1.
-        let sigma = (trace(covariance) / 3.0).sqrt();
-        let across = beside_the_axis(sources).min(beside_the_axis(targets));
-        let rotation_error = sigma / across;
-        if rotation_error.is_nan() || rotation_error > LARGEST_ROTATION_ERROR {
-            let along = trace(sources).min(trace(targets)).sqrt();
-            return Err(match across > NARROW * along {
-                true => of_another_shape(sigma / (total / chosen.len() as f64).sqrt()),
-                false => on_a_line(),
-            });
-        }
-        if scale_error.is_nan() || scale_error > LARGEST_SCALE_ERROR {
-            return Err(Fault::new(
-                format!(
-                    "the known positions give the scale to {:.0} % only",
-                    scale_error * 100.0
-                ),
-                "check that they are those of these photos, or add more exact ones",
-            ));
-        }
-        let squares: f64 = chosen.iter().map(|c| c.3.length_squared()).sum();
-        Ok(Fit {
-            similarity: Similarity::new(local.scale, rotation, local.translation + middle),
-            residuals,
-            used,
-            rms: (squares / chosen.len() as f64).sqrt(),
-            scale_error,
-            scale_interval: scale_error * t95(free),
-            rotation_error,
-        })
-    }
-}
-
 fn outer(v: DVec3) -> DMat3 {
     DMat3::from_cols(v * v.x, v * v.y, v * v.z)
 }
@@ -396,26 +229,10 @@ fn beside_the_axis(sum: DMat3) -> f64 {
         .sqrt()
 }
 
-/// Minimal samples, three indices each: all of them where they are few, else random ones, always the same.
-fn minimal_samples(count: usize) -> Box<dyn Iterator<Item = [usize; 3]>> {
-    if count * (count - 1) * (count - 2) / 6 <= MOST_SAMPLES {
-        return Box::new((0..count).flat_map(move |a| {
-            (a + 1..count).flat_map(move |b| (b + 1..count).map(move |c| [a, b, c]))
-        }));
-    }
-    let mut random = SplitMix(20_170_601);
-    let mut index = move || (random.next() % count as u64) as usize;
-    let three = move || [index(), index(), index()];
-    Box::new(
-        std::iter::repeat_with(three)
-            .filter(|[a, b, c]| a != b && b != c && c != a)
-            .take(MOST_SAMPLES),
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::split_mix::SplitMix;
 
     /// Normal numbers by Box and Muller.
     struct Noise(SplitMix);
@@ -547,6 +364,63 @@ mod tests {
             // Half a metre is found.
             pairs[0].target += DVec3::new(0.5, 0.0, 0.0);
             assert_eq!(fit(&pairs).unwrap().count(), pairs.len() - 1);
+        }
+    }
+
+    /// A corner far from all others is off as far as they let it be, which is more than their own noise; a wrong one is off by more.
+    #[test]
+    fn a_corner_far_from_all_others_stays() {
+        let mut noise = Noise(SplitMix(10));
+        for (count, accuracy) in [(5, None), (8, None), (8, Some(0.03)), (20, None)] {
+            let trials = 1500;
+            let (mut far_left_out, mut held, mut scatter) = (0, 0, 0.0);
+            for trial in 0..trials {
+                let mut points: Vec<DVec3> = (0..count)
+                    .map(|_| noise.vector() * DVec3::new(1.0, 1.0, 0.1))
+                    .collect();
+                points.push(DVec3::new(25.0, 10.0, 0.5));
+                let mut pairs = pairs_of(&points, 0.03, &mut noise);
+                for pair in &mut pairs {
+                    pair.accuracy = accuracy;
+                }
+                let found = fit(&pairs).unwrap();
+                far_left_out += i32::from(!found.used[points.len() - 1]);
+                let error: f64 = found.similarity.scale / 12.5 - 1.0;
+                held += i32::from(error.abs() < found.scale_interval);
+                scatter += error * error / f64::from(trials);
+                // 60 metres in 340, where the others let it be half a metre to five.
+                if trial % 10 == 0 {
+                    pairs[points.len() - 1].target += DVec3::new(24.0, 48.0, 30.0);
+                    let found = fit(&pairs).unwrap();
+                    assert!(!found.used[points.len() - 1], "{count}");
+                }
+            }
+            assert!(far_left_out < 8, "{count}: {far_left_out} of {trials}");
+            let share = f64::from(held) / f64::from(trials);
+            assert!((0.92..0.965).contains(&share), "{count}: {share}");
+            // It tells the scale: without it, it is told to 0.03 / 12.5 / √(2 n), five times worse.
+            assert!(scatter.sqrt() < 1.5e-4, "{count}: {}", scatter.sqrt());
+        }
+    }
+
+    /// A position without a fix (0, 0, 0) or a digit too many, thousands of kilometres away, hides neither itself nor a smaller blunder.
+    #[test]
+    fn what_is_wrong_without_measure_hides_nothing() {
+        let mut noise = Noise(SplitMix(11));
+        for far in [2e4, 1e6, 5e6] {
+            for trial in 0..20 {
+                let points = flight(20, &mut noise);
+                let mut pairs = pairs_of(&points, 0.03, &mut noise);
+                pairs[3].target.y -= far;
+                pairs[11].target.x += 0.6;
+                // Marked in a wrong photo, too.
+                pairs[17].source += noise.vector() * 1e3;
+                let found = fit(&pairs).unwrap();
+                let wrong = [3, 11, 17].map(|place| found.used[place]);
+                assert_eq!(wrong, [false; 3], "{far}, {trial}");
+                assert!(found.count() >= 15, "{}", found.count());
+                assert!((found.similarity.scale / 12.5 - 1.0).abs() < 1e-3);
+            }
         }
     }
 

@@ -6,6 +6,7 @@
 //! search that does not mind wrong pairs ([`fit()`]). A world of Earth coordinates is no obstacle:
 //! everything is counted from the middle of the points.
 
+mod agreeing;
 mod fit;
 mod lengths;
 mod level;
