@@ -51,7 +51,12 @@ pub enum TogetherFound {
     /// They do not tell.
     Unclear,
     /// They do.
-    There,
+    There {
+        /// The photo beside it that tells most.
+        other: String,
+        /// Within this share of its distance from the camera.
+        off: f64,
+    },
     /// They see it elsewhere.
     Against(Doubt),
 }
@@ -80,7 +85,9 @@ impl Evidence {
         };
         let of_together = match &self.together {
             TogetherFound::Against(doubt) => Some(doubt),
-            TogetherFound::NotCompared | TogetherFound::Unclear | TogetherFound::There => None,
+            TogetherFound::NotCompared | TogetherFound::Unclear | TogetherFound::There { .. } => {
+                None
+            }
         };
         self.doubts.iter().chain(of_colours).chain(of_together)
     }

@@ -1,9 +1,7 @@
-//! A flight's health at a glance: its unit, coordinate system, up axis, colours, metadata, holes, points, photos.
+//! A flight's health at a glance: its unit, coordinate system, up axis, colours, distance, metadata, holes, points, photos.
 //! Each is good, or says in one sentence what is not and what mends it; every front end shows these words.
 
-use crate::flight::{
-    ColoursFound, Doubt, Evidence, PhotoFileState, PhotoReview, Review, TogetherFound,
-};
+use crate::flight::{ColoursFound, Doubt, PhotoFileState, PhotoReview, Review, TogetherFound};
 use crate::open::FlightReconstruction;
 use crate::surface::UpAxis;
 
@@ -18,6 +16,8 @@ pub enum HealthItem {
     UpAxis,
     /// Of the surface, and whether those of the photos are the same.
     Colours,
+    /// Whether photos see the surface where it is. Only where photos were compared with those beside them.
+    Distance,
     /// What the photos' files say of their cameras.
     Exif,
     /// Of the surface, where photos look.
@@ -36,6 +36,7 @@ impl HealthItem {
             Self::CoordinateSystem => "coordinates",
             Self::UpAxis => "up",
             Self::Colours => "colours",
+            Self::Distance => "distance",
             Self::Exif => "EXIF",
             Self::Holes => "holes",
             Self::Points => "points",
@@ -125,13 +126,15 @@ pub struct StatedOfFlight<'a> {
     pub doubtful_up: Option<UpAxis>,
 }
 
-/// How a flight is, in the order of [`HealthItem`]; of its points only where something speaks against them.
+/// How a flight is, in the order of [`HealthItem`]; of its points only where something speaks against them, of
+/// its distance where photos were compared.
 pub fn flight_health(review: &Review, stated: &StatedOfFlight<'_>) -> Vec<HealthFinding> {
     let found = [
         Some(unit(review, stated)),
         Some(coordinates(review, stated)),
         Some(up(review, stated)),
         Some(colours(review)),
+        distance(review),
         Some(exif(review, stated)),
         Some(holes(review)),
         points(review),
@@ -282,34 +285,16 @@ fn up(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
 
 fn colours(review: &Review) -> HealthFinding {
     let item = HealthItem::Colours;
-    let (other, reason) = doubted(review, Doubt::is_of_pixels);
+    let (other, reason) = doubted(review, Doubt::is_of_colours);
     if other > 0 {
         let says = format!("{}: {reason}.", share(other, review));
         return of(item, Health::Bad, share(other, review), says);
     }
-    let evidence = &review.looked_up().evidence;
-    let (there, compared) = seen_by_others(evidence);
-    let together = match there {
-        0 => String::new(),
-        _ => format!(
-            " {} see it with photos beside them where it is.",
-            share(there, review)
-        ),
-    };
-    if review.flight().parts().surface.colors().is_empty() && there > 0 {
-        let says = format!("The surface has no colours.{together}");
-        let health = if 2 * there > compared {
-            Health::Good
-        } else {
-            Health::Unknown
-        };
-        return of(item, health, "none", says);
-    }
     if review.flight().parts().surface.colors().is_empty() {
-        let says = "The surface has no colours: nothing says whether the photos show this pile."
-            .to_owned();
-        return of(item, Health::Unknown, "none", says).with(Remedy::AddSurface);
+        let says = "The surface has no colours: none say whether the photos show this pile.";
+        return of(item, Health::Unknown, "none", says.to_owned()).with(Remedy::AddSurface);
     }
+    let evidence = &review.looked_up().evidence;
     let is_compared = |colours: &ColoursFound| *colours != ColoursFound::NotCompared;
     let compared = evidence.iter().filter(|e| is_compared(&e.colours)).count();
     let found = files_found(review);
@@ -321,21 +306,41 @@ fn colours(review: &Review) -> HealthFinding {
         return of(item, Health::Unknown, "not compared", says);
     }
     let says = format!(
-        "Nothing in the colours of {} speaks against the surface.{together}",
+        "Nothing in the colours of {} speaks against the surface.",
         share(compared, review)
     );
     of(item, Health::Good, "same", says)
 }
 
-/// How many photos see the surface where it is together with those beside them, and of how many they were compared.
-fn seen_by_others(evidence: &[Evidence]) -> (usize, usize) {
-    let count =
-        |is: fn(&TogetherFound) -> bool| evidence.iter().filter(|e| is(&e.together)).count();
-    let there = count(|together| *together == TogetherFound::There);
-    (
-        there,
-        count(|together| *together != TogetherFound::NotCompared),
-    )
+fn distance(review: &Review) -> Option<HealthFinding> {
+    let item = HealthItem::Distance;
+    let (elsewhere, reason) = doubted(review, |d| matches!(d, Doubt::OtherDistance { .. }));
+    if elsewhere > 0 {
+        let says = format!("{}: {reason}.", share(elsewhere, review));
+        return Some(of(item, Health::Bad, share(elsewhere, review), says));
+    }
+    let evidence = review.looked_up().evidence.iter();
+    let of_compared = evidence.filter_map(|evidence| match &evidence.together {
+        TogetherFound::NotCompared => None,
+        TogetherFound::There { off, .. } => Some(Some(*off)),
+        TogetherFound::Unclear | TogetherFound::Against(_) => Some(None),
+    });
+    let of_compared: Vec<Option<f64>> = of_compared.collect();
+    let there: Vec<f64> = of_compared.iter().copied().flatten().collect();
+    let worst = there.iter().copied().reduce(f64::max);
+    let Some(worst) = worst else {
+        let says = "The photos and those beside them do not tell where the surface is.".to_owned();
+        return (!of_compared.is_empty()).then(|| of(item, Health::Unknown, "unclear", says));
+    };
+    let says = format!(
+        "{} see the surface where it is, together with those beside them: within {:.1} % of its distance.",
+        share(there.len(), review),
+        worst * 100.0
+    );
+    Some(match 2 * there.len() > of_compared.len() {
+        true => of(item, Health::Good, "as seen", says),
+        false => of(item, Health::Unknown, share(there.len(), review), says),
+    })
 }
 
 fn exif(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {

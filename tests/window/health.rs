@@ -44,6 +44,7 @@ fn the_sample_is_well_but_for_its_hole() {
             HealthItem::CoordinateSystem,
             HealthItem::UpAxis,
             HealthItem::Colours,
+            HealthItem::Distance,
             HealthItem::Exif,
             HealthItem::Holes,
             HealthItem::Photos,
@@ -53,6 +54,7 @@ fn the_sample_is_well_but_for_its_hole() {
         HealthItem::Unit,
         HealthItem::UpAxis,
         HealthItem::Colours,
+        HealthItem::Distance,
         HealthItem::Exif,
         HealthItem::Photos,
     ] {

@@ -78,6 +78,7 @@ impl State {
                     return Vec::new();
                 }
                 let Some(path) = &file.path else {
+                    together.give_up(index);
                     continue;
                 };
                 let camera = flight.camera(photo);
@@ -109,8 +110,9 @@ impl State {
                 }
                 context.request_repaint();
                 // What takes longer comes behind what is seen.
-                if let Some(small) = &small {
-                    together.take(&flight, index, small, progress);
+                match &small {
+                    Some(small) => together.take(&flight, index, small, progress),
+                    None => together.give_up(index),
                 }
             }
             together.found(&flight)

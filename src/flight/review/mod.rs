@@ -296,6 +296,7 @@ impl Review {
     /// What is known of a photo by its place in the flight; `None` where there is no such photo.
     pub fn photo(&self, index: usize) -> Option<PhotoReview<'_>> {
         const UNKNOWN: &PhotoFileState = &PhotoFileState::NotNamed;
+        const NOT_COMPARED: &TogetherFound = &TogetherFound::NotCompared;
         let parts = self.flight.parts();
         let photo = parts.photos.get(index)?;
         let judged = self.judged.get(index)?;
@@ -305,6 +306,7 @@ impl Review {
             photo,
             camera: self.flight.camera(photo),
             file: evidence.map_or(UNKNOWN, |evidence| &evidence.file),
+            together: evidence.map_or(NOT_COMPARED, |evidence| &evidence.together),
             outcome: self.outcomes.get(index)?,
             view: self.view(index),
             field: self.field(index),

@@ -1,7 +1,9 @@
 //! One photo of a review: what is known of it, and what follows.
 
 use crate::camera::Camera;
-use crate::flight::{Decision, DecisionKind, Doubt, Outcome, Photo, PhotoFileState, Verdict};
+use crate::flight::{
+    Decision, DecisionKind, Doubt, Outcome, Photo, PhotoFileState, TogetherFound, Verdict,
+};
 use crate::scale::{
     EdgeScales, FieldFacts, FittedScale, PhotoScale, ScaleEstimate, ScalePair, Uncertainty,
     ViewFacts,
@@ -26,6 +28,8 @@ pub struct PhotoReview<'a> {
     pub camera: &'a Camera,
     /// Its image file.
     pub file: &'a PhotoFileState,
+    /// Whether it and those beside it see the surface where it is.
+    pub together: &'a TogetherFound,
     /// Its scale, pixels per world unit.
     pub outcome: &'a Outcome,
     /// How it looks at the surface; `None` where it has no scale, or while nobody has looked.

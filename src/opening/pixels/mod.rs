@@ -57,24 +57,25 @@ pub fn compare_pixels(
         progress.advance(index as u64, parts.photos.len() as u64)?;
         let wants_colours = evidence.colours == ColoursFound::NotCompared;
         let is_read = together.wants(index) || wants_colours && why_no_colours.is_none();
-        let found = match is_read.then(|| file.pixels()) {
+        let read = is_read.then(|| file.pixels());
+        let small = match &read {
+            Some(Some(Ok(pixels))) => for_comparing(pixels, flight.camera(&parts.photos[index])),
+            _ => None,
+        };
+        match &small {
+            Some(small) => together.take(flight, index, small, progress),
+            None => together.give_up(index),
+        }
+        if !wants_colours {
+            continue;
+        }
+        let found = match read {
             None => Colours::Not(why_no_colours.unwrap_or_default().to_owned()),
             Some(None) => Colours::Not("no image file".to_owned()),
             Some(Some(Err(error))) => Colours::Unreadable(error.fault.to_string()),
-            Some(Some(Ok(pixels))) => {
-                let small = for_comparing(&pixels, flight.camera(&parts.photos[index]));
-                if let Some(small) = &small {
-                    together.take(flight, index, small, progress);
-                }
-                match wants_colours {
-                    true => Colours::of_photo(flight, index, small.as_ref()),
-                    false => continue,
-                }
-            }
+            Some(Some(Ok(_))) => Colours::of_photo(flight, index, small.as_ref()),
         };
-        if wants_colours {
-            colours.push((index, found));
-        }
+        colours.push((index, found));
     }
     Ok(ComparedPixels {
         colours,

@@ -10,7 +10,7 @@ use crate::flight::{Doubt, Flight, Outcome, TogetherFound};
 use crate::jobs::Progress;
 use crate::photo_files::PhotoFile;
 use crate::picture::{PairSight, Patches, SeenAt, Sighted, SmallPhoto, seen_at};
-use crate::scale::ImageKind;
+use crate::scale::{ImageKind, ScaleField};
 
 /// What a photo and those beside it see.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,19 +63,23 @@ impl From<&Together> for TogetherFound {
     fn from(together: &Together) -> Self {
         match (together.doubt(), together.sight) {
             (Some(doubt), _) => Self::Against(doubt),
-            (None, PairSight::There(_)) => Self::There,
+            (None, PairSight::There(off)) => Self::There {
+                other: together.other.clone(),
+                off,
+            },
             (None, _) => Self::Unclear,
         }
     }
 }
 
-/// Compares photos with those beside them, as they are read: each is kept, small, until all beside it were there.
+/// Compares photos with those beside them, as they are read: each is kept, small and with its distances, until all beside it were there.
+/// (Its patches would be ten times as much.)
 #[derive(Debug, Default)]
 pub struct PhotosTogether {
     /// Which are compared.
     pairs: Vec<[usize; 2]>,
-    /// Those that were read, and wait for others, with their patches.
-    kept: BTreeMap<usize, (SmallPhoto, Patches)>,
+    /// Those that were read, and wait for others, with where they see the surface.
+    kept: BTreeMap<usize, (SmallPhoto, ScaleField)>,
     /// What was seen, parallel to the pairs; `None` while a photo is not read.
     sights: Vec<Option<PairSight>>,
 }
@@ -119,19 +123,33 @@ impl PhotosTogether {
         let (grid, image) = (Patches::grid(&small), ImageKind::Undistorted);
         // What shows no surface is compared with nothing.
         let Ok(field) = flight.field(posed, image, grid, progress) else {
+            self.give_up(photo);
             return;
         };
-        let patches = Patches::of(&small, &field);
-        self.kept.insert(photo, (small, patches));
+        self.kept.insert(photo, (small, field));
         for (pair, sight) in self.pairs.iter().zip(&mut self.sights) {
             if pair.contains(&photo)
                 && let [Some(first), Some(second)] = pair.map(|of| self.kept.get(&of))
             {
-                let in_second = seen_at(&first.1, &sighted(flight, pair[1], &second.0));
-                let in_first = seen_at(&second.1, &sighted(flight, pair[0], &first.0));
+                let [of_first, of_second] =
+                    [first, second].map(|(small, field)| Patches::of(small, field));
+                let in_second = seen_at(&of_first, &sighted(flight, pair[1], &second.0));
+                let in_first = seen_at(&of_second, &sighted(flight, pair[0], &first.0));
                 *sight = Some(PairSight::of(in_second, in_first));
             }
         }
+        self.forget_done();
+    }
+
+    /// Nothing comes of a photo: nobody waits for it any more.
+    pub fn give_up(&mut self, photo: usize) {
+        let pairs = self.pairs.iter().copied().zip(self.sights.iter().copied());
+        (self.pairs, self.sights) = pairs.filter(|(pair, _)| !pair.contains(&photo)).unzip();
+        self.forget_done();
+    }
+
+    /// Forgets those that wait for nobody.
+    fn forget_done(&mut self) {
         let waits = |of: usize| {
             let mut open = self.pairs.iter().zip(&self.sights);
             open.any(|(pair, sight)| sight.is_none() && pair.contains(&of))

@@ -105,6 +105,7 @@ fn name(item: HealthItem) -> &'static str {
         HealthItem::CoordinateSystem => "Coordinate system",
         HealthItem::UpAxis => "Up axis",
         HealthItem::Colours => "Colours",
+        HealthItem::Distance => "Distance",
         HealthItem::Exif => "EXIF",
         HealthItem::Holes => "Holes",
         HealthItem::Points => "Points",

@@ -5,7 +5,7 @@ use egui::RichText;
 
 use crate::actions;
 use crate::command::Command;
-use crate::flight::PhotoReview;
+use crate::flight::{PhotoReview, TogetherFound};
 use crate::names::unbroken;
 use crate::numbers::{interval_percent, significant_digits, with_interval};
 use crate::open_flight::OpenFlight;
@@ -117,6 +117,16 @@ pub(super) fn scales(
     });
     if let Some(fitted) = fitted {
         of_the_line(fitted, ui);
+    }
+    if let TogetherFound::There { other, off } = photo.together {
+        let text = format!(
+            "Surface confirmed with\u{a0}{other}, to\u{a0}{:.1}\u{a0}%",
+            off * 100.0
+        );
+        ui.label(text).on_hover_text(
+            "Where this photo and the one beside it see the surface together, off its distance from the camera: a surface that lies \
+             elsewhere makes a scale wrong by as much",
+        );
     }
     if let Some(difference) = photo.difference() {
         ui.add(egui::Label::new(RichText::new(difference.to_string()).weak()).wrap())

@@ -70,6 +70,13 @@ pub(super) fn head(
             }
         }
         overlays(state, ui, commands);
+        let of_scale = open.flight().parts().image;
+        if state.preferences.tint && shown != of_scale {
+            ui.weak(match of_scale {
+                ImageKind::Undistorted => "The tint is of the undistorted photo.",
+                ImageKind::AsShot => "The tint is of the photo as shot.",
+            });
+        }
         if let Some(photo) = open.selected {
             names::name(ui, open.name(photo));
         }
