@@ -15,6 +15,7 @@ use fragscale_core::units::LengthUnit;
 use image::RgbImage;
 
 use crate::delineating::leave_out;
+use crate::engine::Habits;
 use crate::mass::PhotoFragments;
 use crate::measures::{SieveShape, measured};
 
@@ -95,15 +96,17 @@ pub fn field(flight: &Flight, photo: &Photo, progress: &Progress) -> Result<Scal
     flight.field(photo, ImageKind::Undistorted, grid, progress)
 }
 
-/// What a photo's fragments are in the world's `unit`, of which the narrowest that is outlined is `least_across` pixels: [`Habits::least_across`](crate::Habits::least_across) of an
-/// engine, `None` of people and other tools.
+/// What a photo's fragments are in the world's `unit`. `habits` are those of the engine that outlined them, `None` of people and
+/// other tools; the photo's edges are spread over `spread` pixels.
 pub fn fragments(
     labels: &LabelImage,
     field: &ScaleField,
     shape: SieveShape,
-    least_across: Option<f64>,
+    habits: Option<Habits>,
+    spread: Option<f64>,
     unit: LengthUnit,
 ) -> PhotoFragments {
     let fragments = measured(labels, field, shape);
-    PhotoFragments::new(labels, field, fragments, least_across, unit)
+    let least = habits.map(|habits| habits.least_across(spread));
+    PhotoFragments::new(labels, field, fragments, least, unit)
 }

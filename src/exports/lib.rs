@@ -48,8 +48,8 @@ pub use flown_report::{
 };
 pub use fragments::{
     FRAGMENT_TABLES, FragmentSizes, FragmentTables, MassWay, MeasuredPhoto, OutlinedFiles,
-    PhotoOfSizes, PhotoOutlined, curves_csv, fragment_tables, label_png, labels_png, left_over,
-    outlined_files,
+    PhotoOfSizes, PhotoOutlined, curves_csv, distribution_csv, fragment_tables, label_png,
+    labels_png, left_over, outlined_files,
 };
 pub use map_places::MapPlaces;
 pub use masks::{

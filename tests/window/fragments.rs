@@ -616,6 +616,71 @@ fn all_photos_are_outlined() {
         let of = open.fragments.of(photo).expect("outlines");
         assert!(fragments(of.now()) > 500 && of.is_changed());
     }
+    // And it says at once what they come to.
+    let all = open.fragments.all.as_ref().expect("measured");
+    assert_eq!(all.photos, [3, 3]);
+    assert!(all.sizes.is_some() && desk.says("3 of 3"));
+}
+
+/// What all photos come to is what the export writes of "all photos", from outlines on the screen and in files alike; what is changed
+/// behind it is said, and its curves take the place of a single photo's beside the sieves.
+#[test]
+fn all_photos_together() {
+    let folder = sample();
+    let file = folder.path().join("flight.toml");
+    let mut desk = outlined(&file);
+    desk.press(Modifiers::COMMAND, Key::S);
+    // The first is in files alone, the second on the screen.
+    let mut desk = Desk::new(Some(&file));
+    desk.press(Modifiers::NONE, Key::ArrowDown);
+    desk.click(Role::Tab, "Fragments");
+    desk.click(Role::Button, "Outline this photo");
+    desk.click(Role::Button, "To size distributions");
+    desk.harness
+        .state_mut()
+        .apply(Command::Page(Page::Fragments));
+    desk.settle();
+    desk.click(Role::Button, "Measure all photos");
+    let all = desk.open().fragments.all.as_ref().expect("measured");
+    assert_eq!(all.photos, [2, 9]);
+    assert!(desk.says("7 of 9 photos are not outlined, and are left out"));
+    let (by_mass, intervals) = all.sizes.as_ref().expect("sizes");
+    let to = folder.path().join("exported");
+    let found: Vec<[Option<f64>; 3]> = intervals
+        .iter()
+        .map(|of| [by_mass.curve.size_at(of.percent), of.low, of.high])
+        .collect();
+    desk.harness
+        .state_mut()
+        .apply(Command::Fragments(FragmentStep::Export(to.clone().into())));
+    desk.settle();
+    let table = fs::read_to_string(to.join("sizes.csv")).unwrap();
+    let mut rows = table.lines().filter(|line| line.starts_with("all photos,"));
+    for (percent, found) in ["20", "50", "80"].iter().zip(found) {
+        let row: Vec<&str> = rows.next().expect("of all photos").split(',').collect();
+        assert_eq!(row[1], *percent);
+        // The world counts in metres, the table in centimetres.
+        let written: Vec<Option<f64>> = row[2..5].iter().map(|of| of.parse().ok()).collect();
+        assert_eq!(written, found.map(|found| Some(found? * 100.0)));
+        assert!(written[0].is_some(), "{row:?}");
+    }
+
+    desk.click(Role::Button, "All to size distributions");
+    let sources = desk.harness.state().state().distributions.sources();
+    assert_eq!(sources.len(), 1);
+    assert_eq!(sources[0].set.curves.len(), 2);
+    assert!(!desk.says("have changed since"));
+    desk.harness
+        .state_mut()
+        .apply(Command::Page(Page::Fragments));
+    desk.settle();
+    let changed = "were changed since: measure again";
+    assert!(!desk.says(changed));
+    desk.press(Modifiers::NONE, Key::N);
+    desk.press(Modifiers::NONE, Key::Delete);
+    assert!(desk.says(changed));
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert!(!desk.says(changed));
 }
 
 #[test]

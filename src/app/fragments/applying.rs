@@ -24,6 +24,8 @@ impl State {
             FragmentStep::Masks { path, of } => self.read_masks(path, of),
             FragmentStep::Network(path) => self.read_network(path),
             FragmentStep::TakeDistribution => self.take_fragments_distribution(),
+            FragmentStep::MeasureAll => self.measure_all_fragments(),
+            FragmentStep::TakeAllDistributions => self.take_all_distributions(),
             FragmentStep::Export(to) => self.export_fragments(to),
             step => {
                 let Some(open) = &mut self.open else {
@@ -174,6 +176,8 @@ impl Fragments {
             | FragmentStep::OutlineAll
             | FragmentStep::Masks { .. }
             | FragmentStep::Export(_)
+            | FragmentStep::MeasureAll
+            | FragmentStep::TakeAllDistributions
             | FragmentStep::TakeDistribution => {}
         }
         self.forget_gone(Some(photo));

@@ -56,6 +56,10 @@ pub enum FragmentStep {
     Finer(DVec2),
     /// Takes the photo's size distribution over to its page.
     TakeDistribution,
+    /// Measures all photos that are outlined, together.
+    MeasureAll,
+    /// Takes the size distributions of all of them over to their page.
+    TakeAllDistributions,
     /// Writes tables, report and outlines of all photos that are outlined into this folder.
     Export(Destination),
 }

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::FragmentStep;
+use super::outlined::{AllOutlined, Outlined};
 use crate::command::{Command, Destination};
+use crate::delineation::OutlinedBy;
 use crate::delineation::mass::WantedSteps;
 use crate::delineation::measures::SieveShape;
-use crate::delineation::{OutlinedBy, Outliner, photo};
 use crate::exports::{
     self, FRAGMENT_TABLES, FragmentSizes, FragmentTables, MapPlaces, MassWay, MeasuredPhoto,
     PhotoOutlined,
@@ -17,13 +18,10 @@ use crate::files::{self, FileError, Inputs, Kind};
 use crate::flight::{Flight, FlightSettings, LookedUp};
 use crate::formats::read_bytes;
 use crate::jobs::Progress;
-use crate::labels::LabelImage;
-use crate::open_flight::OpenFlight;
-use crate::opening::{apart_from_photos, read_outlines, saved_outlines};
+use crate::opening::apart_from_photos;
 use crate::picture::edge_spread;
 use crate::state::{Severity, State};
 use crate::tasks::Task;
-use crate::tasks::photos::read_photo;
 use crate::units::LengthUnit;
 
 impl Task {
@@ -31,60 +29,10 @@ impl Task {
     pub const EXPORT_FRAGMENTS: Self = Self::new("Exporting fragments").writing();
 }
 
-/// Where a photo's outlines are.
-enum Outlines {
-    /// On the screen: as they are now, and what outlined them first.
-    Now(LabelImage, Outliner),
-    /// In files beside flight.toml.
-    Saved([PathBuf; 2]),
-}
-
-/// A photo that is outlined.
-struct Outlined {
-    index: usize,
-    name: String,
-    stem: String,
-    file: Option<PathBuf>,
-    outlines: Outlines,
-}
-
-impl Outlined {
-    /// Why nothing came of it.
-    fn failed(&self, fault: &Fault) -> String {
-        format!("photo '{}': {fault}", self.name)
-    }
-}
-
 /// What was written, in words.
 struct Written {
     sentence: String,
     warnings: Vec<String>,
-}
-
-impl OpenFlight {
-    /// Those of the photos that are outlined, on the screen or in files.
-    fn outlined(&self, photos: &[usize]) -> Vec<Outlined> {
-        let own = self.files.origin.flight_file();
-        let stems = exports::photo_file_stems(self.flight());
-        let stems = stems.into_iter().enumerate();
-        stems
-            .filter(|(index, _)| photos.contains(index))
-            .filter_map(|(index, stem)| {
-                let outlines = match self.fragments.of(index) {
-                    Some(of) => Outlines::Now(of.now().labels().clone(), of.by().clone()),
-                    None => Outlines::Saved(saved_outlines(own?, &stem)?),
-                };
-                let file = self.files.photo_files.get(index).cloned();
-                Some(Outlined {
-                    index,
-                    name: self.name(index).to_owned(),
-                    stem,
-                    file: file.unwrap_or_default().path,
-                    outlines,
-                })
-            })
-            .collect()
-    }
 }
 
 impl State {
@@ -97,43 +45,27 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let parts = open.flight().parts();
-        let all: Vec<usize> = (0..parts.photos.len()).collect();
-        let decisions = open.settings().decisions;
-        let (photos, left_out) = match open.flight().without_left_out(all, &decisions) {
-            Ok(found) => found,
-            Err(fault) => {
-                self.say(Severity::Error, &fault.to_string());
+        let gathered = open.all_outlined().and_then(|all| {
+            apart_from_photos(&to.path, &open.files.photo_files)
+                .map_err(|error| error.to_string())?;
+            Ok(all)
+        });
+        let AllOutlined {
+            outlined,
+            mut warnings,
+            ..
+        } = match gathered {
+            Ok(gathered) => gathered,
+            Err(refused) => {
+                self.say(Severity::Error, &refused);
                 return;
             }
         };
-        let count = photos.len();
-        let outlined = open.outlined(&photos);
-        let refused = match (parts.unit_known, outlined.is_empty()) {
-            (false, _) => Some(
-                "the model is in a frame of its own, whose unit nobody states: georeference it first".to_owned(),
-            ),
-            (_, true) => Some("no photo is outlined yet: outline one or more first".to_owned()),
-            _ => apart_from_photos(&to.path, &open.files.photo_files)
-                .err()
-                .map(|error| error.to_string()),
-        };
-        if let Some(refused) = refused {
-            self.say(Severity::Error, &refused);
-            return;
-        }
         let folder = to.path.clone();
         let photos = outlined.iter();
         let photos = photos.flat_map(|of| exports::outlined_files(&folder, &of.stem));
         let tables = FRAGMENT_TABLES.map(|name| folder.join(name));
         let paths: Vec<PathBuf> = photos.chain(tables).collect();
-        let mut warnings: Vec<String> = left_out.into_iter().collect();
-        if outlined.len() < count {
-            warnings.push(format!(
-                "{} of {count} photos are not outlined, and are left out",
-                count - outlined.len()
-            ));
-        }
         let those: Vec<&Path> = paths.iter().map(PathBuf::as_path).collect();
         warnings.extend(exports::left_over(&folder, &those));
         let export = Export {
@@ -251,23 +183,8 @@ impl Export {
         let failed = |fault: Fault| of.failed(&fault);
         let posed = &self.flight.parts().photos[of.index];
         let camera = self.flight.camera(posed);
-        let missing = || format!("the file of photo '{}' is not there", of.name);
-        let pixels = read_photo(of.file.as_deref().ok_or_else(missing)?)?;
-        let pixels = photo::undistorted(&pixels, camera).map_err(failed)?;
-        let (mut labels, by, mut notes) = match &of.outlines {
-            Outlines::Now(labels, by) => (labels.clone(), by.clone(), Vec::new()),
-            Outlines::Saved(files) => {
-                let read = read_outlines(files, &of.name, camera, of.file.as_deref())
-                    .map_err(|error| error.to_string())?;
-                (read.outlines.into_labels(), read.by, read.notes)
-            }
-        };
-        notes.extend(photo::take_off_objects(
-            &mut labels,
-            &self.settings,
-            posed,
-            camera,
-        ));
+        let pixels = of.pixels(camera)?;
+        let (labels, by, mut notes) = of.labels(&self.settings, posed, camera)?;
         // Of outlines of other tools nobody has measured it yet.
         let spread = by.spread.or_else(|| edge_spread(&pixels));
         let outlined = OutlinedBy::Saved(by.habits);

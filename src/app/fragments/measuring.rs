@@ -62,9 +62,9 @@ impl State {
             let camera = flight.camera(posed);
             let covered =
                 delineation::photo::take_off_objects(&mut labels, &settings, posed, camera);
-            let least = habits.map(|habits| habits.least_across(spread));
             let (shape, unit) = (SieveShape::Calibrated, flight.parts().unit);
-            let measured = delineation::photo::fragments(&labels, &field, shape, least, unit);
+            let measured =
+                delineation::photo::fragments(&labels, &field, shape, habits, spread, unit);
             let steps = Steps::of(habits);
             let by_mass = by_mass([(&measured, steps)]);
             let percents = SizeInterval::PERCENTS;
@@ -139,10 +139,8 @@ impl State {
             warnings,
             fragments: Some(OfFragments {
                 flight: open.files.origin.file().to_owned(),
-                photo,
-                revision: of.revision,
-                objects: measured.without.clone(),
-                unit: world,
+                photo: Some(photo),
+                made_of: open.fragments_made_of().of_photo(photo, open.name(photo)),
             }),
         })
     }
@@ -153,13 +151,16 @@ impl State {
         let (Some(made_of), Some(open)) = (&source.fragments, &self.open) else {
             return false;
         };
-        let of = open.fragments.of(made_of.photo);
-        made_of.flight == open.files.origin.file()
-            && of.is_some_and(|of| {
-                of.revision != made_of.revision
-                    || open.flight().parts().unit != made_of.unit
-                    || objects_in(&open.settings(), open.name(made_of.photo)) != made_of.objects
-            })
+        let now = open.fragments_made_of();
+        let is_other = match made_of.photo {
+            Some(photo) => {
+                // Outlines that are not on the screen are as they were.
+                open.fragments.of(photo).is_some()
+                    && now.of_photo(photo, open.name(photo)) != made_of.made_of
+            }
+            None => now != made_of.made_of,
+        };
+        made_of.flight == open.files.origin.file() && is_other
     }
 }
 

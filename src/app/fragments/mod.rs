@@ -8,6 +8,8 @@
 //! outlining      an engine's work, as a job
 //! measured       what the outlines come to
 //! measuring      measures them, as a job whenever they change
+//! outlined       the photos that are outlined, as a job takes them along
+//! all_photos     measures all of them together, as a job that she starts
 //! files          saved beside flight.toml, and read from there
 //! exporting      tables, report and outlines, as the command `delineate` writes them
 //! ```
@@ -16,6 +18,7 @@
 //! limit; measuring follows behind. Outlines of a photo stay in memory until the flight is closed: four bytes a
 //! pixel, and what engines leave for coarser and finer of the photo that was outlined last.
 
+mod all_photos;
 mod applying;
 mod command;
 mod engine_choice;
@@ -24,6 +27,7 @@ pub(crate) mod files;
 mod measured;
 mod measuring;
 mod network;
+mod outlined;
 mod outlining;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -31,7 +35,7 @@ use std::sync::Arc;
 
 pub use command::{FragmentStep, FragmentTool};
 pub use engine_choice::{EngineChoice, Network};
-pub use measured::MeasuredFragments;
+pub use measured::{AllMeasured, MeasuredFragments};
 
 use crate::delineation::{Outliner, Regions};
 use crate::fault::Fault;
@@ -122,6 +126,11 @@ impl PhotoOutlines {
         self.editing.now()
     }
 
+    /// Whether they are what a file had when they were read.
+    fn is_as_read(&self) -> bool {
+        self.revision == 0 && !self.from_nothing
+    }
+
     /// Whether no file holds them.
     pub fn is_changed(&self) -> bool {
         match self.is_nothing() {
@@ -191,6 +200,8 @@ pub struct Fragments {
     pub selected: Option<u32>,
     /// Why nothing came of the last step.
     pub refused: Option<Fault>,
+    /// What all of them came to when they were measured last.
+    pub all: Option<AllMeasured>,
     /// By photo.
     photos: BTreeMap<usize, PhotoOutlines>,
     /// All regions of the photo that was outlined last.
@@ -202,6 +213,8 @@ pub struct Fragments {
     /// The photo that is outlined now, while one is, and those whose turn comes after it.
     outlining: Option<usize>,
     waiting: VecDeque<usize>,
+    /// Whether all are outlined, and not the selected one alone.
+    outlines_all: bool,
     /// Why outlines of another tool were not taken.
     pub(crate) masks_refused: Option<String>,
 }
@@ -213,6 +226,11 @@ impl Fragments {
     /// The outlines of a photo, if there are any.
     pub fn of(&self, photo: usize) -> Option<&PhotoOutlines> {
         self.photos.get(&photo).filter(|of| !of.is_nothing())
+    }
+
+    /// Whether any photo's outlines are on the screen.
+    pub fn is_any(&self) -> bool {
+        self.photos.values().any(|of| !of.is_nothing())
     }
 
     /// How many photos are outlined before this one, the one of now among them; `None` where it does not wait.
@@ -250,6 +268,7 @@ impl Fragments {
     /// The same of the flight that was read again: fields of scales may be others, and so all measures.
     pub(crate) fn of_another_surface(mut self) -> Self {
         self.field = None;
+        self.all = None;
         for of in self.photos.values_mut() {
             of.measured = None;
         }

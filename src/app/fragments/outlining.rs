@@ -34,12 +34,13 @@ impl State {
             return;
         };
         open.fragments.waiting.clear();
+        open.fragments.outlines_all = false;
         if let Some(photo) = open.selected {
             self.outline(photo);
         }
     }
 
-    /// Outlines all photos that are not outlined yet, on the screen or in files.
+    /// Outlines all photos that are not outlined yet, on the screen or in files; then says what all come to.
     pub(super) fn outline_all(&mut self) {
         let Some(open) = &mut self.open else {
             return;
@@ -53,6 +54,7 @@ impl State {
             .filter(|(photo, stem)| open.fragments.of(*photo).is_none() && !is_saved(stem));
         let photos = photos.map(|(photo, _)| photo).collect();
         open.fragments.waiting = photos;
+        open.fragments.outlines_all = true;
         self.outline_next();
     }
 
@@ -63,6 +65,8 @@ impl State {
         open.fragments.outlining = None;
         if let Some(photo) = open.fragments.waiting.pop_front() {
             self.outline(photo);
+        } else if std::mem::take(&mut open.fragments.outlines_all) {
+            self.measure_all_fragments();
         }
     }
 

@@ -29,7 +29,7 @@ use std::sync::Arc;
 pub use command::DistributionCommand;
 pub use computing::Computed;
 pub use measured::{EffortFile, MeasuredStep};
-pub use source::{OfFragments, Source};
+pub use source::{MadeOf, OfFragments, Source};
 
 use crate::fragmentation::{AnalysisOptions, Labels, Model, SieveSeries, Weighting};
 use crate::state::history::History;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::fault::Fault;
-use crate::flight::ScaleObject;
+use crate::flight::{Decision, ScaleObject};
 use crate::fragmentation::DistributionSet;
 use crate::units::LengthUnit;
 
@@ -19,7 +19,7 @@ pub struct Source {
     pub set: DistributionSet,
     /// What was noticed while reading.
     pub warnings: Vec<String>,
-    /// What it was made of, where it is of a photo's fragments.
+    /// What it was made of, where it is of photos' fragments.
     pub fragments: Option<OfFragments>,
 }
 
@@ -28,14 +28,34 @@ pub struct Source {
 pub struct OfFragments {
     /// The flight's file.
     pub flight: PathBuf,
-    /// By its place in the flight.
-    pub photo: usize,
-    /// Of its outlines.
-    pub revision: u64,
-    /// The scale objects that were taken off these.
+    /// By its place in the flight; `None`: of all photos that are outlined.
+    pub photo: Option<usize>,
+    /// Their outlines.
+    pub made_of: MadeOf,
+}
+
+/// What sizes of fragments follow from: with another one they are others.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MadeOf {
+    /// Of those photos whose outlines are not as their files have them, which revision.
+    pub revisions: Vec<(usize, u64)>,
+    /// What is taken off the outlines.
     pub objects: Vec<ScaleObject>,
+    /// Which photos are left out.
+    pub decisions: Vec<Decision>,
     /// Of the world's lengths.
     pub unit: LengthUnit,
+}
+
+impl MadeOf {
+    /// What those of one photo alone follow from.
+    #[must_use]
+    pub fn of_photo(mut self, photo: usize, name: &str) -> Self {
+        self.revisions.retain(|(of, _)| *of == photo);
+        self.objects.retain(|object| object.photo == name);
+        self.decisions.clear();
+        self
+    }
 }
 
 impl Source {
@@ -61,14 +81,18 @@ impl Source {
         self.path.is_none() && self.fragments.is_none()
     }
 
-    /// Whether another one is of the same photo of the same flight, outlined by the same engine: it takes that one's place.
+    /// Whether another one is of the same photo of the same flight, outlined by the same engine, or of one of its photos where this is
+    /// of all: it takes that one's place.
     pub fn replaces(&self, other: &Self) -> bool {
         let of = |source: &Self| {
             let of = source.fragments.as_ref()?;
             let method = source.set.curves.first()?.labels.method.clone();
-            Some((of.flight.clone(), of.photo, method))
+            Some((of.photo, (of.flight.clone(), method)))
         };
-        self.fragments.is_some() && of(self) == of(other)
+        let (Some((photo, own)), Some((other, others))) = (of(self), of(other)) else {
+            return false;
+        };
+        own == others && (photo.is_none() || photo == other)
     }
 
     /// Makes its curves differ in their labels from those of `others`: where a trial has no name, it
@@ -97,7 +121,7 @@ impl Source {
 mod tests {
     use super::*;
 
-    fn of(flight: &str, photo: usize, method: &str) -> Source {
+    fn of(flight: &str, photo: Option<usize>, method: &str) -> Source {
         let table = format!("method,size_mm,passing\n{method},1,20\n{method},2,80\n");
         let columns = crate::formats::DistributionColumns::default();
         let (set, _) = crate::formats::size_distributions(&table, &columns).unwrap();
@@ -109,9 +133,12 @@ mod tests {
             fragments: Some(OfFragments {
                 flight: PathBuf::from(flight),
                 photo,
-                revision: 0,
-                objects: Vec::new(),
-                unit: LengthUnit::Metre,
+                made_of: MadeOf {
+                    revisions: Vec::new(),
+                    objects: Vec::new(),
+                    decisions: Vec::new(),
+                    unit: LengthUnit::Metre,
+                },
             }),
         }
     }
@@ -119,11 +146,15 @@ mod tests {
     /// Drones call the first photo of each card alike.
     #[test]
     fn photos_of_two_flights_stand_beside_each_other() {
-        let first = of("north/flight.toml", 0, "learned");
-        assert!(of("north/flight.toml", 0, "learned").replaces(&first));
-        assert!(!of("north/flight.toml", 0, "classical").replaces(&first));
-        assert!(!of("north/flight.toml", 1, "learned").replaces(&first));
-        let mut other = of("south/flight.toml", 0, "learned");
+        let first = of("north/flight.toml", Some(0), "learned");
+        assert!(of("north/flight.toml", Some(0), "learned").replaces(&first));
+        assert!(!of("north/flight.toml", Some(0), "classical").replaces(&first));
+        assert!(!of("north/flight.toml", Some(1), "learned").replaces(&first));
+        // All photos of a flight have its single ones among them.
+        let all = of("north/flight.toml", None, "learned");
+        assert!(all.replaces(&first) && !first.replaces(&all) && all.replaces(&all));
+        assert!(!of("south/flight.toml", None, "learned").replaces(&first));
+        let mut other = of("south/flight.toml", Some(0), "learned");
         assert!(!other.replaces(&first));
         other.set_apart(&[Arc::new(first)]).unwrap();
         assert_eq!(other.set.curves[0].labels.trial, "south");

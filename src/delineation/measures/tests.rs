@@ -151,8 +151,14 @@ fn the_limit_of_others_is_as_wide_as_an_engines() {
                 + 3 * u32::from(is_in([300.0, 100.0], [2.0, 2.0]))
         });
         let field = field(0.0);
-        let photo =
-            crate::photo::fragments(&labels, &field, SieveShape::Circle, None, LengthUnit::Metre);
+        let photo = crate::photo::fragments(
+            &labels,
+            &field,
+            SieveShape::Circle,
+            None,
+            None,
+            LengthUnit::Metre,
+        );
         (photo.limit, photo.notes(&labels, false))
     };
     let (limit, notes) = said(30.0);
@@ -179,8 +185,14 @@ fn what_is_beside_the_surface_is_said() {
         let at = |middle: f64| (x - middle).abs() < 20.0 && (y - 200.0).abs() < 20.0;
         u32::from(at(100.0)) + 2 * u32::from(at(300.0))
     });
-    let photo =
-        crate::photo::fragments(&labels, &field, SieveShape::Circle, None, LengthUnit::Metre);
+    let photo = crate::photo::fragments(
+        &labels,
+        &field,
+        SieveShape::Circle,
+        None,
+        None,
+        LengthUnit::Metre,
+    );
     let notes = photo.notes(&labels, false);
     assert!(
         notes[0].starts_with("1 outline of which too little lies on the surface"),

@@ -17,5 +17,5 @@ use photo_files::OUTLINED_ENDINGS;
 pub use photo_files::{OutlinedFiles, PhotoOutlined, outlined_files};
 pub use sizes::{FragmentSizes, MassWay, MeasuredPhoto};
 pub use table::{PhotoOfSizes, curves_csv};
-pub use tables::{FRAGMENT_TABLES, FragmentTables, fragment_tables};
+pub use tables::{FRAGMENT_TABLES, FragmentTables, distribution_csv, fragment_tables};
 use world_outlines::{WorldOutlines, world_geojson};

@@ -66,8 +66,14 @@ impl PhotoOutlined<'_> {
         let posed = &self.flight.parts().photos[self.index];
         let field = photo::field(self.flight, posed, progress)?;
         let habits = self.by.habits();
-        let least = habits.map(|habits| habits.least_across(self.spread));
-        let fragments = photo::fragments(self.labels, &field, self.shape, least, units[0]);
+        let fragments = photo::fragments(
+            self.labels,
+            &field,
+            self.shape,
+            habits,
+            self.spread,
+            units[0],
+        );
         Ok(OutlinedFiles {
             bytes: self.bytes(&posed.name, &field, &fragments, places, units)?,
             notes: fragments.notes(self.labels, habits.is_some()),

@@ -130,6 +130,11 @@ impl<'a> FragmentSizes<'a> {
         said
     }
 
+    /// The distribution of all photos together, and how sure its sizes are.
+    pub fn into_all(self) -> Option<(ByMass, Vec<SizeInterval>)> {
+        self.all.map(|row| (row.by_mass, row.intervals))
+    }
+
     /// The curves of the photos.
     pub(super) fn curves(&self) -> Vec<(&str, &ByMass)> {
         self.photos

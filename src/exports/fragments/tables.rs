@@ -46,18 +46,30 @@ pub fn fragment_tables(
             fragments: &of.fragments.fragments,
         })
         .collect();
-    let csv = |text: Result<String, csv::Error>| {
-        let text = text.map_err(|error| Fault::new(error.to_string(), "report this"));
-        text.map(String::into_bytes)
-    };
     let methods = methods_of(measured);
-    let method = format!("fragscale ({methods})");
     Ok([
-        csv(fragments_csv(&rows, world, unit))?,
-        csv(curves_csv(&method, &sizes.curves(), world, unit))?,
-        csv(sizes_csv(&sizes.rows(), world, unit))?,
+        csv(fragments_csv(&rows, world, unit))?.into_bytes(),
+        distribution_csv(&methods, sizes, of.units)?.into_bytes(),
+        csv(sizes_csv(&sizes.rows(), world, unit))?.into_bytes(),
         page(of, &methods, measured, sizes, picture)?.into_bytes(),
     ])
+}
+
+/// The second of them: the photos' curves, outlined by `methods`. Units of the world, and of what is written.
+///
+/// # Errors
+/// Where memory runs out.
+pub fn distribution_csv(
+    methods: &str,
+    sizes: &FragmentSizes<'_>,
+    [world, unit]: [LengthUnit; 2],
+) -> Result<String, Fault> {
+    let method = format!("fragscale ({methods})");
+    csv(curves_csv(&method, &sizes.curves(), world, unit))
+}
+
+fn csv(text: Result<String, csv::Error>) -> Result<String, Fault> {
+    text.map_err(|error| Fault::new(error.to_string(), "report this"))
 }
 
 /// What outlined them, in a word or two.

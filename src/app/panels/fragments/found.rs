@@ -2,9 +2,9 @@
 
 use egui::{Role, Ui, WidgetInfo};
 
+use super::all_photos::size_rows;
 use crate::command::{Asking, Command};
 use crate::delineation::measures::Fragment;
-use crate::exports::PhotoOfSizes;
 use crate::fragments::{FragmentStep, MeasuredFragments, PhotoOutlines};
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
@@ -218,36 +218,8 @@ fn all(
             return;
         }
     };
-    let unit = state.preferences.unit();
-    let factor = open.flight().parts().unit.in_units_of(unit);
-    let sizes = PhotoOfSizes {
-        photo: "",
-        by_mass,
-        intervals: &measured.intervals,
-        scale: None,
-    };
-    let behind = format!(" {unit}");
-    let size = |percent: f64| {
-        let size = sizes.size_in_words(percent, factor, &behind);
-        size.unwrap_or_else(|| "below what is seen".to_owned())
-    };
-    let rows = vec![
-        ("P20", size(20.0)),
-        ("P50", size(50.0)),
-        ("P80", size(80.0)),
-        ("Whole fragments", by_mass.whole.to_string()),
-        ("Cut by an edge", by_mass.cut.to_string()),
-        (
-            "Area not outlined",
-            crate::exports::percent(by_mass.unfound),
-        ),
-        ("Of the mass, fines", crate::exports::percent(by_mass.fines)),
-        (
-            "Nothing said below",
-            format!("{} {unit}", significant_digits(by_mass.limit * factor, 2)),
-        ),
-        ("Outlined by", outlined_by(&of.by().engine)),
-    ];
+    let mut rows = size_rows(state, open, by_mass, &measured.intervals);
+    rows.push(("Outlined by", outlined_by(&of.by().engine)));
     ui.strong("This photo, by mass");
     ui.horizontal_wrapped(|ui| take_along(state, ui, commands));
     pairs("fragments by mass", rows, ui);
