@@ -150,6 +150,31 @@ impl Step {
     }
 }
 
+/// Whether the steps to the mass fit each other and what they are given: those of the option `steps`, `None` where it is not there.
+///
+/// # Errors
+/// What does not.
+pub fn steps_fit<'a>(
+    steps: Option<impl Iterator<Item = &'a str>>,
+    has_porosity: bool,
+    has_tail: bool,
+) -> Result<(), String> {
+    let Some(steps) = steps else {
+        return Ok(());
+    };
+    let steps: Vec<&str> = steps.collect();
+    if steps.contains(&"none") && steps.len() > 1 {
+        return Err("--steps: none goes with no other step; leave it out".to_owned());
+    }
+    if has_porosity && !steps.contains(&"pores") {
+        return Err("--porosity is for the step pores, which --steps leaves out".to_owned());
+    }
+    if has_tail && !steps.contains(&"fines") {
+        return Err("--tail is of the fines, which --steps leaves out".to_owned());
+    }
+    Ok(())
+}
+
 impl FromStr for Step {
     type Err = String;
 
@@ -289,6 +314,15 @@ impl Asked {
                     "delineate.masks is in place of an engine: leave delineate.engine out"
                         .to_owned(),
                 );
+            }
+            if said.step == Step::Delineate {
+                let has = |key: &str| said.options.contains_key(key);
+                let steps = said.options.get("steps");
+                steps_fit(
+                    steps.map(|steps| steps.iter().map(String::as_str)),
+                    has("porosity"),
+                    has("tail"),
+                )?;
             }
             for option in said.step.options() {
                 if option.kind != OptionKind::Share {

@@ -20,7 +20,12 @@ impl PhotoFragments {
             let own = [
                 f64::from(of.number),
                 of.pixels as f64,
-                f64::from(u8::from(of.is_cut)),
+                // 1 by the photo's edge, 2 by what is no rock alone.
+                match (of.is_cut, of.is_at_edge) {
+                    (false, _) => 0.0,
+                    (true, true) => 1.0,
+                    (true, false) => 2.0,
+                },
                 of.middle.x,
                 of.middle.y,
                 of.extent.x,
@@ -124,6 +129,7 @@ fn fragment(value: &Value) -> Option<Fragment> {
         pixels: pixels as usize,
         middle: DVec2::new(x, y),
         is_cut: is_cut != 0.0,
+        is_at_edge: is_cut == 1.0,
         extent: DVec2::new(across, down),
         world,
     })

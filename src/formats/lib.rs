@@ -66,7 +66,7 @@ pub use tables::effort_table::{effort_table, read_effort_table};
 pub use tables::grouped_values::{GroupedValues, Groups, grouped_values, read_grouped_values};
 pub use tables::places::{places, read_places, typed_places};
 pub use tables::size_distributions::{
-    DistributionColumns, PointWeights, read_point_weights, read_size_distributions,
-    size_distributions, without_options,
+    DistributionColumns, PointWeights, SizesRead, read_point_weights, read_size_distributions,
+    read_sizes, size_distributions, without_options,
 };
 pub use tables::table::{NumberRepairs, Row, Table, may_be_thousands};

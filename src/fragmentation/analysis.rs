@@ -78,6 +78,8 @@ pub struct Analysis {
     pub comparison: Result<Comparison, Fault>,
     /// Of each method with more than one trial, the reference first.
     pub repeatability: Vec<(String, Result<Repeatability, Fault>)>,
+    /// Of each curve that was read its method, and at how many sizes it was measured.
+    measured: Vec<(String, usize)>,
 }
 
 impl Analysis {
@@ -158,6 +160,7 @@ impl Analysis {
             reference,
             comparison,
             repeatability,
+            measured,
         })
     }
 
@@ -244,7 +247,11 @@ pub fn fit_trials(
     let known_by = |curve: &LabelledDistribution| {
         let labels = &curve.labels;
         let photos = analysis.photos.of(&labels.method, Some(&labels.trial));
-        measured_by(&photos, merging, None)
+        measured_by(
+            &photos,
+            merging,
+            most_points(&analysis.measured, &labels.method),
+        )
     };
     fit_known(&analysis.trials, model, plain, known_by, progress)
 }
@@ -284,7 +291,10 @@ fn fit_known(
         let found = options_of(curve).and_then(|options| fit(&curve.distribution, model, &options));
         Ok(found.map(|fit| match known_by(curve) {
             MeasuredBy::Repeats(left_out) => fit.of_repeats(&left_out),
-            MeasuredBy::Points(_) => fit,
+            MeasuredBy::Points(measured) => {
+                let all = curve.distribution.points().len();
+                fit.of_fewer_points(all, measured.unwrap_or(all).min(all))
+            }
         }))
     };
     set.curves.par_iter().map(one).collect()

@@ -5,7 +5,7 @@ use crate::jobs::Progress;
 use crate::units::LengthUnit;
 use crate::{
     Analysis, AnalysisOptions, DistributionSet, Fit, FitOptions, LabelledDistribution, Labels,
-    Model, SizeDistribution, Swebrec, fit,
+    Model, SieveSeries, SizeDistribution, Swebrec, fit, fit_trials,
 };
 
 fn curve(method: &str, photo: &str, x50: f64, sizes: &[f64]) -> LabelledDistribution {
@@ -84,7 +84,9 @@ fn one_photo_says_nothing_of_others() {
     assert_eq!(fit.percentile(50.0, 0.95).band, None);
     assert_eq!(fit.parameters[0].standard_error, None);
     assert!(
-        fit.notes.iter().any(|note| note.contains("of one photo")),
+        fit.notes
+            .iter()
+            .any(|note| note.contains("of one photo or sample")),
         "{:?}",
         fit.notes
     );
@@ -126,4 +128,33 @@ fn sieves_of_two_trials_count_once() {
     let ratio = width(&comparison.reference.fit) / width(&plain);
     let wanted = (12.0_f64 / 7.0).sqrt() * 2.776_445 / 2.262_157;
     assert!((ratio / wanted - 1.0).abs() < 1e-5, "{ratio} {wanted}");
+}
+
+/// A single trial brought to other sieves is known by those that it was measured at, as the mean of trials is: seven, and not the
+/// nineteen of the series between them.
+#[test]
+fn a_trial_at_other_sieves_is_known_by_its_own() {
+    let sizes = [5.6, 11.2, 20.0, 40.0, 63.0, 90.0, 125.0];
+    let rounded = |method: &str, x50: f64| {
+        let mut one = curve(method, "", x50, &sizes);
+        let points = one.distribution.points().iter();
+        let points = points.map(|[size, percent]| [*size, percent.round()]);
+        one.distribution = SizeDistribution::new(points.collect()).expect("points");
+        one
+    };
+    let set = DistributionSet {
+        unit: LengthUnit::Millimetre,
+        curves: vec![rounded("sieve", 50.0), rounded("belt", 60.0)],
+    };
+    let options = AnalysisOptions {
+        sieves: Some(SieveSeries::AstmE11),
+        ..AnalysisOptions::default()
+    };
+    let found = Analysis::of(set, &options, &Progress::default()).expect("analysed");
+    let fits = fit_trials(&found, options.model, options.merging, &Progress::default());
+    let of_trial = fits.expect("fits")[0].clone().expect("a fit");
+    let of_mean = &found.comparison.as_ref().expect("compared").reference.fit;
+    assert!(found.trials.curves[0].distribution.points().len() > 15);
+    assert!(of_mean.parameters[0].standard_error.is_some());
+    assert_eq!(of_trial.parameters, of_mean.parameters);
 }

@@ -203,7 +203,13 @@ pub struct Resampled {
 /// # Errors
 /// Where fewer than two sizes are left.
 pub fn resample(distribution: &SizeDistribution, sizes: &[f64]) -> Result<Resampled, Fault> {
-    let mut sizes = sizes.to_vec();
+    // 11.2 mm are not 1.12 cm to the last bit, and yet the same sieve.
+    let measured = || distribution.points().iter().map(|point| point[0]);
+    let same = |size: &f64| {
+        let own = measured().find(|own| (own / size - 1.0).abs() < SAME_SIEVE);
+        own.unwrap_or(*size)
+    };
+    let mut sizes: Vec<f64> = sizes.iter().map(same).collect();
     sizes.sort_by(f64::total_cmp);
     sizes.dedup();
     let mut unknown = Vec::new();
@@ -290,6 +296,7 @@ impl DistributionSet {
                 ));
             }
             if let (Some(least), Some(most)) = (found.unknown.first(), found.unknown.last()) {
+                let [least, most] = [least, most].map(|size| as_typed(*size));
                 warnings.push(format!(
                     "{}{} of the {} sieves of {} ({least} to {most} {}) lie outside of what was \
                      measured and are left out",
@@ -314,6 +321,33 @@ impl DistributionSet {
 mod tests {
     use super::*;
     use crate::Labels;
+
+    /// The same sieves in another unit: what was measured at its ends is kept, whatever rounding says.
+    #[test]
+    fn sieves_are_the_same_in_every_unit() {
+        let in_mm = [1.4, 2.8, 11.2, 31.5, 63.0, 106.0];
+        let passing = [5.0, 12.0, 30.0, 55.0, 80.0, 97.0];
+        let mut counts = Vec::new();
+        for unit in LengthUnit::ALL {
+            let factor = LengthUnit::Millimetre.in_units_of(unit);
+            for last in [3, 5] {
+                let points = in_mm.iter().zip(passing).take(last + 1).skip(last - 3);
+                let points = points.map(|(size, percent)| [size * factor, percent]);
+                let curve = SizeDistribution::new(points.collect()).expect("a curve");
+                let found = resample(&curve, &SieveSeries::AstmE11.openings(unit)).expect("sieves");
+                let ends = [
+                    found.distribution.points().first(),
+                    found.distribution.points().last(),
+                ];
+                let own = [curve.points().first(), curve.points().last()];
+                assert_eq!(ends, own, "{unit}");
+                counts.push((last, found.distribution.points().len()));
+            }
+        }
+        counts.sort_unstable();
+        counts.dedup();
+        assert_eq!(counts.len(), 2, "{counts:?}");
+    }
 
     /// ASTM E11, table 1: the sieves without those in common use in between are powers of the fourth root
     /// of 2 in mm, rounded, from 2^7 down; every third of R20 is 10^(3 k / 20), rounded; EN 933-2's basic

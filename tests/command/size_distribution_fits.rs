@@ -126,6 +126,32 @@ fn the_reference_curve_has_scipys_parameters_and_standard_errors() {
     assert!(near(number(&point["band"][1]), 42.635028, 1e-4));
 }
 
+/// The largest size counts as the table's sizes do, whatever unit they are brought to.
+#[test]
+fn the_largest_size_is_in_the_unit_of_the_table() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let points = [(4, 10), (8, 20), (16, 45), (32, 80), (64, 100)];
+    for (unit, in_mm) in [("µm", 0.001), ("mm", 1.0), ("dm", 100.0)] {
+        let file = folder.path().join("table.csv");
+        let rows = points.map(|(size, passing)| format!("{size},{passing}\n"));
+        let text = format!("size ({unit}),percent passing\n{}", rows.concat());
+        std::fs::write(&file, text).expect("written");
+        let file = file.to_str().expect("a path");
+        let found = stdout_of(&["psd", "fit", file, "--xmax", "100", "--format", "json"]);
+        let found: Value = serde_json::from_str(&found).expect("JSON");
+        let mm = match found["unit"].as_str() {
+            Some("mm") => 1.0,
+            Some("cm") => 10.0,
+            other => panic!("{other:?}: {found}"),
+        };
+        let xmax = found["parameters"]["xmax"].as_f64().expect("xmax") * mm;
+        assert!(near(xmax, 100.0 * in_mm, 1e-12), "{unit}: {xmax}");
+        // The points are the same in their own unit.
+        let b = found["parameters"]["b"].as_f64().expect("b");
+        assert!(near(b, 3.484_160, 1e-5), "{unit}: {b}");
+    }
+}
+
 /// The sample's fragments are drawn from Swebrec of x50 10.5 mm, xmax 25 mm, b 2.2
 /// (`src/sample/preset.rs`): a draw of some thousands is near it.
 #[test]

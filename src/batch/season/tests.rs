@@ -89,11 +89,17 @@ fn keys_are_those_of_the_steps() {
 /// Outlines lie below each flight, a share is a number, and a table of the fines beside the file.
 #[test]
 fn the_way_to_the_mass_is_that_of_the_command() {
-    let text = "format = 1\nsteps = [\"delineate\"]\n[delineate]\nmasks = \"masks\"\nsteps = [\"edges\", \"fines\"]\nporosity = 0.3\n\
+    let text = "format = 1\nsteps = [\"delineate\"]\n[delineate]\nmasks = \"masks\"\nsteps = [\"edges\", \"pores\", \"fines\"]\nporosity = 0.3\n\
                 tail = \"fines.csv\"\n[[flight]]\npath = \"b\"\n";
     let options = &parsed(text).unwrap().asked.steps[0].options;
     assert_eq!(options["masks"], ["masks"]);
-    assert_eq!(options["steps"], ["edges", "fines"]);
+    assert_eq!(options["steps"], ["edges", "pores", "fines"]);
+    // What the command would refuse of every flight is refused at once.
+    let fault = parsed(&text.replace(", \"pores\"", "")).unwrap_err();
+    assert!(
+        fault.what.contains("--porosity is for the step pores"),
+        "{fault}"
+    );
     assert_eq!(options["porosity"], ["0.3"]);
     assert_eq!(options["tail"], ["a/fines.csv"]);
     let law = parsed(&text.replace("fines.csv", "swebrec")).unwrap();

@@ -81,7 +81,12 @@ fn beside(flight: &Path, name: &str) -> PathBuf {
 /// The words of the command that does the step alone, once for each file of a step that writes several.
 fn words(asked: &AskedStep, told: &FlightTold) -> Vec<Vec<OsString>> {
     let in_results = |name: &str| told.to.join(name).into_os_string();
-    let flag = |name: &str, value: OsString| [OsString::from(name), value];
+    // In one word: a value may begin with a dash.
+    let flag = |name: &str, value: OsString| {
+        let mut word = OsString::from(format!("{name}="));
+        word.push(value);
+        [word]
+    };
     let mut before: Vec<OsString> = vec![asked.step.as_str().into()];
     let mut after: Vec<OsString> = Vec::new();
     if asked.step == Step::Psd {

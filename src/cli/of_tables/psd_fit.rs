@@ -10,7 +10,7 @@ use crate::cli::written_beside::{drawn_figures, figure_formats, write_all};
 use crate::exports::{self, FitReport, FittedCurve, FittedDistribution};
 use crate::fault::Fault;
 use crate::files::Kind;
-use crate::formats::{DistributionColumns, FileError, read_point_weights, read_size_distributions};
+use crate::formats::{DistributionColumns, FileError, SizesRead, read_point_weights, read_sizes};
 use crate::fragmentation::{FitOptions, LabelledDistribution, fit_each};
 use crate::jobs::Progress;
 
@@ -59,8 +59,11 @@ pub(super) fn fit(arguments: &FitArguments, progress: &Progress) -> Result<Answe
         point_weight: arguments.weights.clone(),
         ..arguments.columns.columns()
     };
-    let (set, mut warnings) =
-        read_size_distributions(path, &columns).map_err(|error| error.to_string())?;
+    let SizesRead {
+        set,
+        factor,
+        said: mut warnings,
+    } = read_sizes(path, &columns).map_err(|error| error.to_string())?;
     let weights = match (&arguments.columns.size, &arguments.weights) {
         (Some(size), Some(column)) => {
             let (weights, mended) =
@@ -75,7 +78,8 @@ pub(super) fn fit(arguments: &FitArguments, progress: &Progress) -> Result<Answe
         let weights = weights.as_ref().map(|weights| weights.of(points));
         Ok(FitOptions {
             weights: weights.transpose()?,
-            xmax: arguments.xmax,
+            // As the table's sizes: in micrometres where those are.
+            xmax: arguments.xmax.map(|xmax| xmax * factor),
         })
     };
     let fits =

@@ -60,7 +60,7 @@ impl Counted {
         let (mut between, mut pores) = (Vec::new(), None);
         for (photo, steps) in photos {
             let first = counted.whole.len();
-            let rock_before = counted.rock;
+            let (rock_before, mut beside_no_rock) = (counted.rock, 0.0);
             counted.of_fines += steps.fines * photo.fines;
             counted.limit = counted.limit.max(photo.limit / steps.engine);
             counted.fines += photo.fines;
@@ -73,6 +73,9 @@ impl Counted {
                 counted.rock += world.area;
                 if fragment.is_cut {
                     counted.cut += 1;
+                    if !fragment.is_at_edge {
+                        beside_no_rock += world.area;
+                    }
                     continue;
                 }
                 let stands_for = match steps.edges {
@@ -89,7 +92,9 @@ impl Counted {
             }
             if steps.edges {
                 let stands_for = counted.whole[first..].iter().map(|[_, area]| area);
-                counted.unseen += counted.rock - rock_before - stands_for.sum::<f64>();
+                // What was left out cuts small ones as it cuts large ones, and of it nothing is known beforehand.
+                let at_edge_or_whole = counted.rock - rock_before - beside_no_rock;
+                counted.unseen += at_edge_or_whole - stands_for.sum::<f64>();
             }
             if steps.pores.is_some() {
                 pores = steps.pores;

@@ -173,7 +173,8 @@ pub fn coarse_end_not_shown(by_mass: &ByMass, intervals: &[SizeInterval]) -> Opt
     let (whole, cut) = (by_mass.whole, by_mass.cut);
     (!names.is_empty()).then(|| {
         format!(
-            "{cut} of {} fragments are cut by the photo's edge, among them most of the largest: its coarse end is not shown, and {} \
+            "{cut} of {} fragments are cut by the photo's edge or what is no rock, and cover more than the whole ones stand for: the coarse end is \
+             not shown, and {} \
              {} no upper end; take photos from farther away",
             whole + cut,
             names.join(" and "),
@@ -264,6 +265,29 @@ mod tests {
             assert_eq!(said.is_some(), found[0].high.is_none(), "{said:?}");
         }
         assert!(holds >= 54 && open > 30, "{holds} {open}");
+    }
+
+    /// What was left out in the midst of a photo cuts fragments of all sizes: that says nothing of the coarse end.
+    #[test]
+    fn what_is_left_out_hides_no_coarse_end() {
+        let mut photo = photo(400, &mut Draws::new(9));
+        photo.frame = glam::DVec2::splat(1e6);
+        let before = intervals(&[(&photo, Steps::default())], NONE, &[80.0]).unwrap()[0];
+        for fragment in photo.fragments.iter_mut().step_by(5) {
+            fragment.is_cut = true;
+        }
+        let found = intervals(&[(&photo, Steps::default())], NONE, &[80.0]).unwrap()[0];
+        let [before, found] = [before, found].map(|of| of.high.unwrap());
+        assert!((found / before - 1.0).abs() < 0.1, "{found} {before}");
+        // By the photo's edge, of which there is none to speak of here, it would.
+        for fragment in photo.fragments.iter_mut().step_by(5) {
+            fragment.is_at_edge = true;
+        }
+        let found = intervals(&[(&photo, Steps::default())], NONE, &[80.0]).unwrap()[0];
+        assert!(
+            found.high.is_none_or(|high| high > 1.05 * before),
+            "{found:?}"
+        );
     }
 
     /// Of very many fragments chance says nothing: what is left is what was put in, 1.96 standard errors each way.

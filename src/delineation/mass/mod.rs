@@ -457,6 +457,7 @@ pub(crate) mod tests {
             pixels: 1,
             middle: DVec2::ZERO,
             is_cut,
+            is_at_edge: is_cut,
             extent: DVec2::splat(extent),
             world: Some(Measures {
                 place: DVec3::ZERO,

@@ -55,7 +55,8 @@ impl Tail {
         let steps = (last - (PER_DECADE * DECADES) as i32..=last).rev();
         let below = steps.map_while(|step| {
             let size = 10f64.powf(f64::from(step) / PER_DECADE);
-            let percent = passing * law(size)? / at_limit;
+            // No more than at the limit, where the law is level: rounding would.
+            let percent = passing * (law(size)? / at_limit).min(1.0);
             (percent >= LEAST).then_some([size, percent])
         });
         let mut points: Vec<[f64; 2]> = below.collect();

@@ -36,6 +36,8 @@ pub struct Fragment {
     pub middle: DVec2,
     /// Whether the photo's edge, or what was left out, cuts it: its size is not known.
     pub is_cut: bool,
+    /// Whether it is the photo's edge that does.
+    pub is_at_edge: bool,
     /// Its extent along the photo's columns and rows, pixels.
     pub extent: DVec2,
     /// In the world; `None` where too little of it is on the surface.
@@ -94,6 +96,7 @@ pub fn measured(labels: &LabelImage, field: &ScaleField, shape: SieveShape) -> V
             of.is_cut |= beside
                 .iter()
                 .any(|other| matches!(other, None | Some(NOT_ROCK)));
+            of.is_at_edge |= beside.contains(&None);
             of.deepest = of.deepest.max(inside[y * width + x]);
             for (differs, x) in [(before != Some(label), x), (behind != Some(label), x + 1)] {
                 if differs {
@@ -184,6 +187,7 @@ struct Sums {
     pixels: usize,
     places: DVec2,
     is_cut: bool,
+    is_at_edge: bool,
     deepest: f64,
     corners: Vec<[f32; 2]>,
     on_surface: usize,
@@ -233,6 +237,7 @@ impl Sums {
             pixels: self.pixels,
             middle: self.places / pixels,
             is_cut: self.is_cut,
+            is_at_edge: self.is_at_edge,
             extent: (high - low).max(DVec2::ZERO),
             world,
         }

@@ -29,8 +29,8 @@ struct Document {
     /// The photo of a GeoJSON of ours.
     photo: Option<String>,
     /// The size of the photo that a GeoJSON is of, where somebody states it.
-    width: Option<u32>,
-    height: Option<u32>,
+    width: Option<Value>,
+    height: Option<Value>,
     /// What the positions of a GeoJSON of ours are, where they are not pixels; or those of a geometry alone.
     coordinates: Option<Coordinates>,
     /// Of a feature alone.
@@ -63,7 +63,16 @@ pub(super) fn read(text: &[u8], is_own: bool) -> Result<(Vec<OutlinedImage>, boo
             return Err(Fault::new(what, remedy));
         }
         let mut image = geojson::image(features, &document.crs, document.photo, is_own)?;
-        image.size = document.width.zip(document.height);
+        // "1280", 1280.0 and what is no size of anything.
+        let side = |value: Option<Value>| {
+            let value = value?;
+            let number = value
+                .as_f64()
+                .or_else(|| value.as_str()?.trim().parse().ok())?;
+            let is_side = number.fract() == 0.0 && (1.0..=f64::from(u32::MAX)).contains(&number);
+            is_side.then_some(number as u32)
+        };
+        image.size = side(document.width).zip(side(document.height));
         return Ok((vec![image], true));
     }
     match (document.images, document.annotations) {

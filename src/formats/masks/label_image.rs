@@ -30,6 +30,9 @@ use crate::text::notes::Notes;
 const MOST_PIECES: usize = 2;
 const FEW_PIECES: usize = 20;
 
+/// What Pascal VOC's masks, and labelme's, have between objects and where nobody says what is there.
+const VOID: u32 = 255;
+
 const REMEDY: &str = "export it again, as a label image of 16 bits";
 
 /// Whether a file begins like PNG or TIFF.
@@ -124,8 +127,17 @@ fn png(bytes: &[u8], photo: &OutlinedPhoto<'_>, notes: &mut Notes) -> Result<Lab
     let (width, height) = decoder.dimensions();
     // What the header claims takes no memory before it is the photo's size.
     check_size(width, height, photo)?;
-    if let Some(labels) = indices(bytes) {
+    if let Some(mut labels) = indices(bytes) {
         notes.say("it has a palette: the numbers of its colours are taken for those of fragments");
+        // Of 254 fragments and more 255 is one of them.
+        let is_void = labels.contains(&VOID) && !labels.contains(&(VOID - 1));
+        if is_void && labels.iter().any(|label| *label != 0 && *label != VOID) {
+            notes.say("255 in its palette is no fragment, as in Pascal VOC's masks (void, between objects)");
+            labels
+                .iter_mut()
+                .filter(|label| **label == VOID)
+                .for_each(|label| *label = 0);
+        }
         return Ok(labels_of(photo, labels));
     }
     let stored = decoder.original_color_type();

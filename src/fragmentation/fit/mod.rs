@@ -163,7 +163,7 @@ impl Fit {
         if repeats.is_none() {
             let why = match left_out {
                 [] | [_] => {
-                    "its points are of one photo: how far another photo of the rock would differ they do not say"
+                    "its points are of one photo or sample: how far another one of the rock would differ they do not say"
                 }
                 _ => {
                     "without some of its photos no function can be fitted: how far they differ is not known"

@@ -85,7 +85,7 @@ fn beyond(points: &Points) -> Option<String> {
     (!beyond.is_empty()).then(|| {
         format!(
             "the points go from {} % to {} % passing: {what} and what is computed from them are the function's \
-             word, with their bands; no point that it was fitted to is there",
+             word; no point that it was fitted to is there",
             one_decimal(first),
             one_decimal(last)
         )

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use crate::batch::steps_fit;
 use crate::delineation::mass::{LOOSE, Step, WantedSteps};
 use crate::delineation::tail::Tail;
 use crate::exports::MeasuredPhoto;
@@ -66,18 +67,17 @@ fn share(text: &str) -> Result<f64, String> {
 impl MassArguments {
     /// An error where steps are named that exclude each other.
     pub(super) fn check(&self) -> Result<(), String> {
-        let steps = self.steps.as_deref().unwrap_or_default();
-        if steps.contains(&StepName::None) && steps.iter().any(|step| *step != StepName::None) {
-            return Err("--steps: none goes with no other step; leave it out".to_owned());
-        }
-        let takes = |step| self.steps.is_none() || steps.contains(&step);
-        if self.porosity.is_some() && !takes(StepName::Pores) {
-            return Err("--porosity is for the step pores, which --steps leaves out".to_owned());
-        }
-        if self.tail.is_some() && !takes(StepName::Fines) {
-            return Err("--tail is of the fines, which --steps leaves out".to_owned());
-        }
-        Ok(())
+        let words = self.steps.as_deref().map(|steps| {
+            let values = steps.iter().filter_map(ValueEnum::to_possible_value);
+            let words: Vec<String> = values.map(|value| value.get_name().to_owned()).collect();
+            words
+        });
+        let words = words.as_ref();
+        steps_fit(
+            words.map(|words| words.iter().map(String::as_str)),
+            self.porosity.is_some(),
+            self.tail.is_some(),
+        )
     }
 
     /// The file that is read for the tail.

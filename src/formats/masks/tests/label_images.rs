@@ -75,6 +75,32 @@ fn numbers_of_a_palette_are_fragments() {
     }
 }
 
+/// Pascal VOC draws void, 255, about every object: it was a fragment from edge to edge.
+#[test]
+fn void_of_a_palette_is_no_fragment() {
+    let of = |numbers: [u8; 12]| {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 4, 3);
+        encoder.set_color(png::ColorType::Indexed);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_palette(vec![7; 768]);
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_image_data(&numbers).unwrap();
+        writer.finish().unwrap();
+        of_bytes(&bytes).unwrap()
+    };
+    let masks = of([1, 255, 2, 2, 1, 255, 255, 2, 0, 0, 255, 255]);
+    assert_eq!(masks.labels.labels, [1, 0, 2, 2, 1, 0, 0, 2, 0, 0, 0, 0]);
+    assert!(
+        masks.notes.iter().any(|note| note.contains("Pascal VOC")),
+        "{:?}",
+        masks.notes
+    );
+    // One of very many.
+    let masks = of([254, 255, 2, 2, 254, 255, 255, 2, 0, 0, 255, 255]);
+    assert!(masks.labels.labels.contains(&255));
+}
+
 /// A mask of one number is no single fragment, unless we wrote it.
 #[test]
 fn regions_of_a_mask_are_fragments() {

@@ -2,13 +2,14 @@
 
 use std::collections::HashMap;
 
+use super::names::{Role, role};
 use super::raw::RawCurve;
 use super::size_text::SizeText;
 use super::size_unit::SizeUnit;
 use super::unit_above::Above;
 use crate::fault::Fault;
 use crate::fragmentation::{DistributionSet, LabelledDistribution, Labels, SizeDistribution};
-use crate::tables::table::NumberRepairs;
+use crate::tables::table::{NumberRepairs, Table};
 use crate::text::fields::shown;
 use crate::units::LengthUnit;
 
@@ -120,6 +121,17 @@ impl Repairs {
     }
 }
 
+/// The curves of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SizesRead {
+    /// The curves.
+    pub set: DistributionSet,
+    /// How many of the set's units one of the table's lengths is: 0.001 where it is of micrometres and the set of mm.
+    pub factor: f64,
+    /// What was mended or passed over, a sentence each.
+    pub said: Vec<String>,
+}
+
 /// How the sizes of a table are to be read.
 #[derive(Debug, Clone)]
 pub(super) struct SizeReading {
@@ -145,8 +157,9 @@ pub(super) fn finish(
     mut curves: Vec<RawCurve>,
     reading: SizeReading,
     mut repairs: Repairs,
-) -> Result<(DistributionSet, Vec<String>), Fault> {
-    let (unit, size_of) = unit_of_sizes(&curves, &reading, &mut repairs)?;
+) -> Result<SizesRead, Fault> {
+    let (of_bare, size_of) = unit_of_sizes(&curves, &reading, &mut repairs)?;
+    let unit = of_bare.unit;
     for curve in &mut curves {
         if let Some(sieves) = curve.sieves {
             let what = prefix(&curve.labels);
@@ -208,7 +221,11 @@ pub(super) fn finish(
             remedy,
         ));
     }
-    Ok((set, repairs.warnings()))
+    Ok(SizesRead {
+        set,
+        factor: of_bare.factor,
+        said: repairs.warnings(),
+    })
 }
 
 /// Which curves' names differ by their spelling alone ("Sieve" and "sieve", trials 1, 1.0 and 01), a sentence each: whether they are one,
@@ -220,8 +237,21 @@ fn spelt_alike(set: &DistributionSet) -> Vec<String> {
         number.map_or(name, |number| number.to_string())
     };
     let mut known: HashMap<[String; 3], &Labels> = HashMap::new();
+    let mut methods: HashMap<String, &str> = HashMap::new();
     let mut said = Vec::new();
     for labels in set.curves.iter().map(|curve| &curve.labels) {
+        let first = *methods
+            .entry(plain(&labels.method))
+            .or_insert(&labels.method);
+        if first != labels.method {
+            let [one, other] = [first, &labels.method].map(shown);
+            let text = format!(
+                "'{one}' and '{other}' are two methods, whose names differ by their spelling alone"
+            );
+            if !said.contains(&text) {
+                said.push(text);
+            }
+        }
         let key = [&labels.method, &labels.trial, &labels.photo].map(|name| plain(name));
         match known.get(&key) {
             Some(first) => said.push(format!(
@@ -285,6 +315,32 @@ fn refuse_percents_below_1(curves: &[RawCurve], name: &str) -> Result<(), Fault>
     Err(Fault::at(last.map_or(1, |point| point.line), what, remedy))
 }
 
+/// How near to 100 percents of classes add up.
+const ROUNDED_SUM: f64 = 0.5;
+
+/// Refuses columns that nobody calls passing, and whose percents add up to 100 as those of classes do.
+pub(super) fn refuse_classes_by_sum(table: &Table, curves: &[RawCurve]) -> Result<(), Fault> {
+    for curve in curves {
+        let percents = curve.points.iter().map(|point| point.percent);
+        let (sum, most) = (percents.clone().sum::<f64>(), percents.fold(0.0, f64::max));
+        let called = curve.labels.to_string();
+        if curve.points.len() > 2
+            && (sum - 100.0).abs() <= ROUNDED_SUM
+            && most < 100.0 - ROUNDED_SUM
+            && role(&called) != Role::Passing
+        {
+            let of = match called.as_str() {
+                "" => String::new(),
+                called => format!(" of '{}'", shown(called)),
+            };
+            let what = format!("the percents{of} add up to 100, as those of classes do");
+            let remedy = "give cumulative percent passing; or say in its name what it is: 'percent passing', 'percent retained'";
+            return Err(Fault::at(table.header_line(), what, remedy));
+        }
+    }
+    Ok(())
+}
+
 /// The unit that a line above the names states, which is said; mm where none does.
 fn of_lines_above(above: &Above, repairs: &mut Repairs) -> SizeUnit {
     let Above::Stated(unit, word, line) = above else {
@@ -297,12 +353,12 @@ fn of_lines_above(above: &Above, repairs: &mut Repairs) -> SizeUnit {
     *unit
 }
 
-/// The unit of the set, and what a size is in it.
+/// The unit of sizes that have none of their own, of which the set's is, and what a size is in the set's.
 fn unit_of_sizes(
     curves: &[RawCurve],
     reading: &SizeReading,
     repairs: &mut Repairs,
-) -> Result<(LengthUnit, impl Fn(&SizeText) -> f64 + use<>), Fault> {
+) -> Result<(SizeUnit, impl Fn(&SizeText) -> f64 + use<>), Fault> {
     let points = || curves.iter().flat_map(|curve| &curve.points);
     // Names that are no numbers make the inches beside them names as well: "2 in." is 50 mm then.
     let by_name = points().any(|point| point.size.number.is_none());
@@ -355,6 +411,15 @@ fn unit_of_sizes(
             header.unit
         ));
     }
+    if let (None, Some(given), Above::Stated(above, word, line)) =
+        (reading.header, reading.given, &reading.above)
+        && *above != SizeUnit::plain(given)
+    {
+        repairs.said.push(format!(
+            "line {line} states another unit of sizes, {}: they are taken for {given}, as the user says",
+            shown(word)
+        ));
+    }
     if let Some(called) = of_bare.called() {
         repairs.said.push(format!(
             "sizes in {called} are taken for {} times {}",
@@ -367,7 +432,7 @@ fn unit_of_sizes(
         let own = own.unwrap_or(of_bare);
         number * own.factor * own.unit.in_units_of(unit)
     };
-    Ok((unit, in_unit))
+    Ok((of_bare, in_unit))
 }
 
 /// One curve, mended.

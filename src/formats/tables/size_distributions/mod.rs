@@ -33,6 +33,7 @@
 mod curves;
 mod layout;
 mod names;
+mod names_of_sizes;
 mod percentile_column;
 mod point_weights;
 mod raw;
@@ -49,6 +50,7 @@ use std::path::Path;
 
 use layout::Layout;
 
+pub use curves::SizesRead;
 pub use point_weights::{PointWeights, read_point_weights};
 
 use crate::fault::Fault;
@@ -138,6 +140,10 @@ pub fn size_distributions(
     text: &str,
     columns: &DistributionColumns,
 ) -> Result<(DistributionSet, Vec<String>), Fault> {
+    sizes_of(text, columns).map(|read| (read.set, read.said))
+}
+
+fn sizes_of(text: &str, columns: &DistributionColumns) -> Result<SizesRead, Fault> {
     let whole = table_of(text);
     let read = match &whole {
         Ok(table) => read::read(table, text, columns),
@@ -150,11 +156,11 @@ pub fn size_distributions(
     let Some((table, lines)) = below_titles(text, columns) else {
         return read;
     };
-    let (set, mut said) = read::read(&table, text, columns)?;
+    let mut found = read::read(&table, text, columns)?;
     let plural = if lines == 1 { "line" } else { "lines" };
     let titles = format!("{lines} {plural} above the names of the columns are passed over");
-    said.insert(0, titles);
-    Ok((set, said))
+    found.said.insert(0, titles);
+    Ok(found)
 }
 
 /// The table below the title, the date, the name of the laboratory: from the first line on whose names say beyond doubt what the
@@ -192,9 +198,16 @@ pub fn read_size_distributions(
     path: &Path,
     columns: &DistributionColumns,
 ) -> Result<(DistributionSet, Vec<String>), FileError> {
+    read_sizes(path, columns).map(|read| (read.set, read.said))
+}
+
+/// The same, with what one of the table's lengths is in the set's unit.
+///
+/// # Errors
+/// With the file, the line and the remedy.
+pub fn read_sizes(path: &Path, columns: &DistributionColumns) -> Result<SizesRead, FileError> {
     let (text, how) = read_bounded(path)?;
-    let (set, mut said) =
-        size_distributions(&text, columns).map_err(|fault| FileError::new(path, fault))?;
-    said.extend(how.map(str::to_owned));
-    Ok((set, said))
+    let mut read = sizes_of(&text, columns).map_err(|fault| FileError::new(path, fault))?;
+    read.said.extend(how.map(str::to_owned));
+    Ok(read)
 }

@@ -1,6 +1,6 @@
 //! What the name of a column says that it holds.
 
-use super::size_unit::{SizeUnit, no_length};
+use super::size_unit::{SizeUnit, in_brackets, is_also_a_word, no_length};
 use crate::fragmentation::Weighting;
 use crate::tables::table::key;
 use crate::units::LengthUnit;
@@ -189,10 +189,12 @@ const RETAINED_NAMES: &[&str] = &[
     "coarser",
     "residue",
     "rückstand",
+    "rückständ",
     "rueckstand",
+    "rueckstaend",
     "refus",
-    "retenido",
-    "retido",
+    "retenid",
+    "retid",
     "trattenut",
     "pozostał",
     "kvarstannat",
@@ -261,6 +263,41 @@ pub(super) fn take_unit(words: &mut Vec<String>) -> Option<SizeUnit> {
     // "size in mm"
     words.pop_if(|word| word == "in");
     Some(unit)
+}
+
+/// Takes the unit that the name of a column of sizes states off its words: at their end, else the only one among them, as in
+/// "Sieve size (inches) - square opening".
+pub(super) fn take_unit_of_size(name: &str, words: &mut Vec<String>) -> Option<SizeUnit> {
+    if let Some(unit) = take_unit(words) {
+        return Some(unit);
+    }
+    let alone: Vec<String> = in_brackets(name)
+        .iter()
+        .map(|text| text.to_lowercase())
+        .collect();
+    let unit_of = |word: &String| {
+        let is_said = alone.iter().any(|text| text.trim_end_matches('.') == word);
+        SizeUnit::of(word).filter(|_| is_said || !is_also_a_word(word))
+    };
+    let unit = words.iter().find_map(unit_of)?;
+    if words.iter().filter_map(unit_of).any(|other| other != unit) {
+        return None;
+    }
+    let place = words.iter().position(|word| unit_of(word).is_some())?;
+    words.retain(|word| unit_of(word).is_none());
+    // "size in mm, nominal"
+    let before = place.checked_sub(1);
+    if let Some(before) =
+        before.filter(|before| words.get(*before).is_some_and(|word| word == "in"))
+    {
+        words.remove(before);
+    }
+    Some(unit)
+}
+
+/// The unit that the name of a column of sizes states.
+pub(super) fn unit_of_size(name: &str) -> Option<SizeUnit> {
+    take_unit_of_size(name, &mut words(name))
 }
 
 /// A column called a size: of sieves or fragments, or, like a sample's or an image's, of something else.
@@ -358,19 +395,26 @@ pub(super) fn size_trouble(name: &str) -> Option<&'static str> {
     let mut words = words(name);
     let is_logarithm =
         |word: &String| matches!(word.as_str(), "log" | "log10" | "ln" | "phi" | "psi");
-    if words.iter().any(is_logarithm) {
+    if words.iter().any(is_logarithm) || name.contains(['φ', 'Φ', 'ϕ']) {
         return Some("may be logarithms of sizes");
     }
     if let Some(what) = no_length(&words) {
         return Some(what);
     }
-    take_unit(&mut words)?;
-    let is_number = |word: &String| word.trim_start_matches('x').parse::<f64>().is_ok();
-    if words.iter().any(is_number) {
-        return Some("has a number beside its unit");
-    }
+    let unit = take_unit_of_size(name, &mut words);
     let is_unit = |word: &String| word.len() > 1 && word != "in" && SizeUnit::of(word).is_some();
-    words.iter().any(is_unit).then_some("has two units")
+    let or = ["or", "and", "oder", "und", "ou", "o"];
+    let is_inch_or = |two: &[String]| two[0] == "in" && or.contains(&two[1].as_str());
+    let others = words.iter().filter(|word| is_unit(word)).count();
+    if others > usize::from(unit.is_none()) || unit.is_some() && words.windows(2).any(is_inch_or) {
+        return Some("has two units");
+    }
+    unit?;
+    let is_number = |word: &String| word.trim_start_matches('x').parse::<f64>().is_ok();
+    words
+        .iter()
+        .any(is_number)
+        .then_some("has a number beside its unit")
 }
 
 /// Whether a text is a unit of what is on sieves or passes them: percent or a mass.
@@ -386,9 +430,10 @@ pub(super) fn sample_of(name: &str) -> String {
         let of_sieves = ["on", "sieve"];
         word.is_empty()
             || says_cumulative(&word)
-            || [RETAINED_NAMES, PERCENT_NAMES, EACH_NAMES, &of_sieves]
+            || [PERCENT_NAMES, EACH_NAMES, &of_sieves]
                 .iter()
                 .any(|list| list.contains(&word.as_str()))
+            || says_retained(&word)
             || says_mass(std::slice::from_ref(&word))
     };
     let separators = |c: char| c.is_whitespace() || matches!(c, '_' | '(' | ')' | '[' | ']' | ',');
@@ -432,8 +477,10 @@ pub(super) fn says_size(word: &str) -> bool {
 
 /// Whether a name says that something stays on sieves.
 pub(super) fn says_retained(name: &str) -> bool {
-    let joined = words(name).concat();
+    let words = words(name);
+    let joined = words.concat();
     RETAINED_NAMES.iter().any(|part| joined.contains(part))
+        || words.iter().any(|word| word == "ret")
 }
 
 /// What the name of a set of percentiles says beside percents and passing.
@@ -500,10 +547,16 @@ pub(super) fn role(name: &str) -> Role {
         return Role::Statistic;
     }
     let of_size = (within(SIZE_NAMES) || any(SIZE_WORDS)) && !within(&["undersize", "oversize"]);
+    if of_size && !percent {
+        let mut without = words.clone();
+        if let Some(unit) = unit.or_else(|| take_unit_of_size(name, &mut without)) {
+            return of_size_role(&without, Some(unit));
+        }
+    }
     if of_size && unit.is_some() {
         return of_size_role(&words, unit);
     }
-    if within(RETAINED_NAMES) {
+    if within(RETAINED_NAMES) || any(&["ret"]) {
         return Role::Retained(RetainedName::of(&words));
     }
     let single = [
@@ -533,7 +586,17 @@ pub(super) fn role(name: &str) -> Role {
         "percentcumulative",
         "percentcum",
     ];
-    if within(PASSING_NAMES) || any(&["pass", "pasa"]) || cumulative.contains(&joined.as_str()) {
+    // Malvern's "Volume Cumulative (%)", Coulter's "Cum. < Volume %" and Sympatec's "% Volume Under".
+    let is_volume_below = percent
+        && any(&["volume", "vol", "number"])
+        && (words.iter().any(|word| says_cumulative(word)) || any(&["under", "below"]))
+        && !any(&["over", "above", "larger"])
+        && !name.contains('>');
+    if within(PASSING_NAMES)
+        || any(&["pass", "pasa"])
+        || cumulative.contains(&joined.as_str())
+        || is_volume_below
+    {
         return match !percent && says_mass(&words) {
             true => Role::PassingMass,
             false => Role::Passing,
@@ -562,6 +625,13 @@ pub(super) fn role(name: &str) -> Role {
         "samplename",
         "name",
     ];
+    // "Sieve No. (ASTM)"
+    let series = ["astm", "e11", "us", "uss", "standard"];
+    let plain = words.iter().filter(|word| !series.contains(&word.as_str()));
+    let plain: String = plain.map(String::as_str).collect();
+    if ["sieveno", "sievenumber", "sievemesh", "screenno"].contains(&plain.as_str()) {
+        return Role::PerhapsSize(unit);
+    }
     match joined.as_str() {
         "sieve" | "sieves" | "screen" | "screens" | "x" | "d" | "mesh" | "sievemesh" | "usmesh"
         | "tylermesh" | "meshus" | "meshastm" | "astmmesh" | "ussieve" | "ussieveno"

@@ -1,6 +1,6 @@
 //! Columns of sizes that a percent passes.
 
-use super::names::{says_retained, take_unit, without_passing, words};
+use super::names::{says_retained, take_unit_of_size, without_passing, words};
 use super::size_unit::SizeUnit;
 use crate::tables::table::split_number;
 
@@ -54,7 +54,7 @@ impl PercentileColumn {
             return None;
         }
         let mut words = words(suffix);
-        let unit = take_unit(&mut words);
+        let unit = take_unit_of_size(suffix, &mut words);
         Some(Self {
             percent,
             unit,

@@ -3,19 +3,20 @@
 use std::collections::{HashMap, HashSet};
 
 use super::DistributionColumns;
-use super::curves::{Repairs, SizeReading, finish};
+use super::curves::{Repairs, SizeReading, SizesRead, finish, refuse_classes_by_sum};
 use super::layout::{LabelColumns, Layout, PercentColumn};
 use super::names::{
     Role, counts_fragments, holds_astm_numbers, holds_sieve_numbers, is_amount, names_percent,
-    role, sample_of, size_trouble, weight_factor, words,
+    role, sample_of, weight_factor,
 };
+use super::names_of_sizes::{refuse_names_of_sizes, unknown};
 use super::raw::{OnSieves, RawCurve, RawPoint};
-use super::retained::{is_pan, is_result, is_total, is_washed};
+use super::retained::{is_no_sieve, is_pan, is_result, is_total, is_washed};
 use super::size_text::{SizeText, fraction_of_inches, sieve_mm};
-use super::size_unit::{SizeUnit, no_length, unknown_unit};
+use super::size_unit::SizeUnit;
 use super::unit_above::Above;
 use crate::fault::Fault;
-use crate::fragmentation::{DistributionSet, Labels};
+use crate::fragmentation::Labels;
 use crate::tables::table::{Row, Table};
 use crate::text::fields::shown;
 use crate::units::LengthUnit;
@@ -25,7 +26,7 @@ pub(super) fn read(
     table: &Table,
     text: &str,
     columns: &DistributionColumns,
-) -> Result<(DistributionSet, Vec<String>), Fault> {
+) -> Result<SizesRead, Fault> {
     let mut reader = Reader {
         table,
         columns,
@@ -113,76 +114,6 @@ pub(super) fn read(
     finish(curves, reading, reader.repairs)
 }
 
-/// The columns that hold sizes; of sizes in the names of columns that which may state their unit.
-fn columns_of_sizes(layout: &Layout) -> Vec<usize> {
-    match layout {
-        Layout::Long { size, .. } | Layout::Wide { size, .. } | Layout::Retained { size, .. } => {
-            vec![*size]
-        }
-        Layout::SizesAsColumns { names, .. } => names.iter().copied().collect(),
-        Layout::Percentiles { columns, .. } => columns.iter().map(|of| of.column).collect(),
-    }
-}
-
-/// Refuses columns whose names say that they hold no sizes, or sizes of two units.
-fn refuse_names_of_sizes(table: &Table, layout: &Layout) -> Result<(), Fault> {
-    for column in columns_of_sizes(layout) {
-        let name = table.name(column);
-        let trouble = match layout {
-            // Their numbers are percents.
-            Layout::Percentiles { .. } | Layout::SizesAsColumns { .. } => no_length(&words(&name)),
-            _ => size_trouble(&name),
-        };
-        if let Some(what) = trouble {
-            let what = format!("column '{name}' {what}");
-            let remedy = "give sizes in one unit, and name it alone: 'size (mm)'";
-            return Err(Fault::at(table.header_line(), what, remedy));
-        }
-    }
-    Ok(())
-}
-
-/// The fault of a name of sizes whose unit, perhaps, is not known.
-fn unknown(table: &Table, layout: &Layout) -> Option<Fault> {
-    let of_column = |column: usize| {
-        let name = table.name(column);
-        let unit = unknown_unit(&name)?;
-        let what = format!(
-            "column '{name}': '{}' is no known unit of sizes",
-            shown(&unit)
-        );
-        let remedy = "state the unit of sizes (--size-unit), write it as mm, cm, m, in or ft, or name another column (--size)";
-        Some(Fault::at(table.header_line(), what, remedy))
-    };
-    columns_of_sizes(layout).into_iter().find_map(of_column)
-}
-
-/// How near to 100 percents of classes add up.
-const ROUNDED_SUM: f64 = 0.5;
-
-/// Refuses columns that nobody calls passing, and whose percents add up to 100 as those of classes do.
-fn refuse_classes_by_sum(table: &Table, curves: &[RawCurve]) -> Result<(), Fault> {
-    for curve in curves {
-        let percents = curve.points.iter().map(|point| point.percent);
-        let (sum, most) = (percents.clone().sum::<f64>(), percents.fold(0.0, f64::max));
-        let called = curve.labels.to_string();
-        if curve.points.len() > 2
-            && (sum - 100.0).abs() <= ROUNDED_SUM
-            && most < 100.0 - ROUNDED_SUM
-            && role(&called) != Role::Passing
-        {
-            let of = match called.as_str() {
-                "" => String::new(),
-                called => format!(" of '{}'", shown(called)),
-            };
-            let what = format!("the percents{of} add up to 100, as those of classes do");
-            let remedy = "give cumulative percent passing; or say in its name what it is: 'percent passing', 'percent retained'";
-            return Err(Fault::at(table.header_line(), what, remedy));
-        }
-    }
-    Ok(())
-}
-
 /// A column of a long table.
 struct SampleColumn {
     size: usize,
@@ -201,6 +132,20 @@ fn with_sample(mut labels: Labels, sample: &str) -> Labels {
         labels.photo = format!("{}, {sample}", labels.photo);
     }
     labels
+}
+
+/// A cell of sizes; where it is empty, the cell beside it that says why: "Pan" and "Total" stand under the names of sieves, in ASTM
+/// C136's sheet.
+fn size_cell(row: &Row, column: usize) -> &str {
+    let cell = row.cell(column);
+    if !is_missing(cell) {
+        return cell;
+    }
+    let cells = (0..row.len()).map(|column| row.cell(column));
+    cells
+        .into_iter()
+        .find(|cell| is_no_sieve(cell))
+        .unwrap_or(cell)
 }
 
 /// What stands where a number is not known.
@@ -222,7 +167,7 @@ struct Reader<'a> {
 impl Reader<'_> {
     /// A size in a cell; `None` for a sieve's pan and a line of sums.
     fn size(&mut self, row: &Row, column: usize) -> Result<Option<SizeText>, Fault> {
-        let cell = row.cell(column);
+        let cell = size_cell(row, column);
         if is_pan(cell) {
             self.repairs.pan(row.line);
             return Ok(None);
@@ -280,6 +225,34 @@ impl Reader<'_> {
             None => None,
         };
         Ok(Some(SizeText { number, sieve_mm }))
+    }
+
+    /// Nothing passes the pan: where something is in it, the column that nobody calls passing is what stays on the sieves.
+    fn refuse_what_is_in_the_pan(
+        &mut self,
+        row: &Row,
+        size: usize,
+        column: usize,
+    ) -> Result<(), Fault> {
+        let name = self.table.name(column);
+        if !is_no_sieve(size_cell(row, size))
+            || !is_pan(size_cell(row, size))
+            || role(&name) == Role::Passing
+            || column >= row.len()
+        {
+            return Ok(());
+        }
+        match self.percent(row, column) {
+            Ok(Some((in_it, _))) if in_it > 0.0 => {
+                let what = format!(
+                    "column '{name}' has {in_it} in the pan, which nothing passes: it seems to be what stays on the sieves"
+                );
+                let remedy =
+                    "call it 'percent retained' or 'mass retained', or give percent passing";
+                Err(Fault::at(row.line, what, remedy))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// A percent in a cell, with whether a percent sign stands behind it; `None` where it is not known.
@@ -397,7 +370,7 @@ impl Reader<'_> {
     ) -> Result<(), Fault> {
         let mut places: HashMap<Labels, usize> = HashMap::new();
         for row in self.table.rows() {
-            let size = row.cell(of.size);
+            let size = size_cell(row, of.size);
             let (washed, total) = (is_washed(size), is_total(size));
             let pan = is_pan(size) || size.parse() == Ok(0.0);
             let size = match sieves.is_some() && (washed || pan || total) {
@@ -414,7 +387,10 @@ impl Reader<'_> {
                     }
                 })? {
                     Some(size) => Some(size),
-                    None => continue,
+                    None => {
+                        self.refuse_what_is_in_the_pan(row, of.size, of.column)?;
+                        continue;
+                    }
                 },
             };
             let percent = self.percent(row, of.column)?;
@@ -465,7 +441,7 @@ impl Reader<'_> {
                     (false, false) => &mut sieves.pan,
                 };
                 if place.replace(percent).is_some() {
-                    let what = format!("'{}' is there twice", shown(row.cell(of.size)));
+                    let what = format!("'{}' is there twice", shown(size_cell(row, of.size)));
                     return Err(Fault::at(row.line, what, "keep one, or name the curves"));
                 }
                 continue;
@@ -506,6 +482,9 @@ impl Reader<'_> {
                 continue;
             }
             let Some(size) = self.size(row, size)? else {
+                for (column, _) in &curves {
+                    self.refuse_what_is_in_the_pan(row, size, *column)?;
+                }
                 continue;
             };
             let there = |place: &&mut (usize, RawCurve)| place.0 < row.len();

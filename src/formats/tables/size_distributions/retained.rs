@@ -51,6 +51,13 @@ pub(super) fn is_pan(cell: &str) -> bool {
     pans.iter().any(|pan| small.starts_with(pan))
 }
 
+/// Whether a cell beside an empty one of sizes says that its line is the pan, what was washed out, or the sum of all.
+pub(super) fn is_no_sieve(cell: &str) -> bool {
+    let is_sign = cell.starts_with('<') || cell.to_lowercase().starts_with(['p', 'f']);
+    let is_word = cell.to_lowercase().starts_with("pan") || !is_sign;
+    (is_word && is_pan(cell)) || is_total(cell) || is_washed(cell)
+}
+
 /// Whether a cell of sizes is in front of the sum of all.
 pub(super) fn is_total(cell: &str) -> bool {
     let small = cell.to_lowercase();
@@ -114,6 +121,72 @@ impl OnSieves {
     /// # Errors
     /// Where the whole is not known or is not what it must be, and where it cannot be told what the numbers are.
     pub(super) fn to_passing(
+        self,
+        curve: &mut RawCurve,
+        size_of: &impl Fn(&SizeText) -> f64,
+        (name, said): (&str, &mut Vec<String>),
+    ) -> Result<(), Fault> {
+        self.in_percents(curve, (name, said))?
+            .percents_to_passing(curve, size_of, (name, said))
+    }
+
+    /// The same where percents may be shares of 1: those that end at 1 are, and are taken times 100.
+    ///
+    /// # Errors
+    /// Where they end below: nobody says whether they are shares or percents.
+    fn in_percents(
+        mut self,
+        curve: &mut RawCurve,
+        (name, said): (&str, &mut Vec<String>),
+    ) -> Result<Self, Fault> {
+        let says_percent = matches!(
+            self.what,
+            RetainedName::CumulativePercent | RetainedName::EachPercent | RetainedName::Percent
+        );
+        let has_sign = curve.points.iter().any(|point| point.percent_sign);
+        if !says_percent || has_sign {
+            return Ok(self);
+        }
+        let amounts = || curve.points.iter().map(|point| point.percent);
+        let others = [self.pan, self.washed, self.total].into_iter().flatten();
+        let largest = amounts().chain(others).fold(0.0, f64::max);
+        let sum = amounts()
+            .chain([self.pan, self.washed].into_iter().flatten())
+            .sum::<f64>();
+        let whole = match self.what {
+            RetainedName::EachPercent => sum.max(largest),
+            _ => largest,
+        };
+        let is_one = |of: f64| (of - 1.0).abs() <= SUM_ROUNDING / 100.0;
+        if !(is_one(whole) || is_one(sum) && largest <= 1.0) {
+            if whole > 0.0 && whole < 1.0 {
+                let what = format!(
+                    "{name}percents retained end at {}, as shares of 1 do",
+                    rounded(whole)
+                );
+                let remedy = "write % signs behind percents; of shares give the line of the pan, or write them times 100";
+                return Err(Fault::at(curve.line, what, remedy));
+            }
+            return Ok(self);
+        }
+        said.push(format!(
+            "{name}what is retained is given in shares of 1 and taken times 100"
+        ));
+        // 0.55 times 100 is 55.00000000000001.
+        let times_100 = |share: f64| (share * 1e11).round() / 1e9;
+        for point in &mut curve.points {
+            point.percent = times_100(point.percent);
+        }
+        for of in [&mut self.pan, &mut self.washed, &mut self.total]
+            .into_iter()
+            .flatten()
+        {
+            *of = times_100(*of);
+        }
+        Ok(self)
+    }
+
+    fn percents_to_passing(
         self,
         curve: &mut RawCurve,
         size_of: &impl Fn(&SizeText) -> f64,

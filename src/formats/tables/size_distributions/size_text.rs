@@ -84,7 +84,11 @@ pub(super) fn sieve_mm(name: &str) -> Option<f64> {
 /// As [`sieve_mm`], with the inches said.
 fn named_sieve_mm(name: &str) -> Option<f64> {
     let squeezed = |text: &str| -> String {
-        let text = text.to_lowercase().replace('#', "no");
+        // "N° 4" and "N.º 4" in Spanish, Portuguese and French.
+        let text = text
+            .to_lowercase()
+            .replace('#', "no")
+            .replace(['°', 'º'], "o");
         let text = text.replace(['"', '″'], "in").replace("inch", "in");
         text.chars()
             .filter(|c| c.is_alphanumeric() || *c == '/')

@@ -234,6 +234,31 @@ impl SizeUnit {
     }
 }
 
+/// Whether a word that is a unit may as well be another word or an initial: "in", "m", "pie". Among others it is a unit only where that is
+/// said, or in brackets alone.
+pub(super) fn is_also_a_word(word: &str) -> bool {
+    let short = ["mm", "cm", "dm", "ft", "um", "µm", "μm", "мм", "см"];
+    let others = [
+        "mil", "pie", "pol", "cal", "tum", "fot", "metro", "thou", "mils",
+    ];
+    word.chars().count() < 3 && !short.contains(&word) || others.contains(&word)
+}
+
+/// What stands in the brackets of a name.
+pub(super) fn in_brackets(name: &str) -> Vec<&str> {
+    let mut found = Vec::new();
+    let mut rest = name;
+    while let Some(open) = rest.find(['(', '[', '{']) {
+        let (_, behind) = rest.split_at(open);
+        let inside = behind.get(1..).unwrap_or_default();
+        let close = inside.find([')', ']', '}']).unwrap_or(inside.len());
+        let (text, after) = inside.split_at(close);
+        found.push(text.trim());
+        rest = after;
+    }
+    found
+}
+
 /// What no length is, of words in the name of sizes: an area or a volume, pixels, and what is half of a size.
 pub(super) fn no_length(words: &[String]) -> Option<&'static str> {
     let any = |is: &dyn Fn(&str) -> bool| words.iter().any(|word| is(word));
@@ -272,13 +297,7 @@ pub(super) fn unknown_unit(name: &str) -> Option<String> {
         "no", "number", "nr", "x", "d", "p", "f", "v", "size", "sizes", "diameter", "log", "scale",
         "passing", "old", "new",
     ];
-    let mut rest = name;
-    while let Some(open) = rest.find(['(', '[', '{']) {
-        let (_, behind) = rest.split_at(open);
-        let inside = behind.get(1..).unwrap_or_default();
-        let close = inside.find([')', ']', '}']).unwrap_or(inside.len());
-        let (text, after) = inside.split_at(close);
-        let text = text.trim();
+    let is_unknown = |text: &&str| {
         let mut words = text
             .split(|c: char| !c.is_alphanumeric() && c != '²' && c != '³')
             .filter(|word| !word.is_empty())
@@ -286,12 +305,10 @@ pub(super) fn unknown_unit(name: &str) -> Option<String> {
         let is_known = |word: String| {
             known.contains(&word.as_str()) || word.starts_with(|c: char| c.is_ascii_digit())
         };
-        if !text.is_empty() && !words.all(is_known) && SizeUnit::of(text).is_none() {
-            return Some(text.to_owned());
-        }
-        rest = after;
-    }
-    None
+        !text.is_empty() && !words.all(is_known) && SizeUnit::of(text).is_none()
+    };
+    let found = in_brackets(name).into_iter().find(is_unknown);
+    found.map(str::to_owned)
 }
 
 #[cfg(test)]

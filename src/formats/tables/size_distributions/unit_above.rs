@@ -4,7 +4,7 @@
 //! neither taken nor passed over: the user is asked.
 
 use super::names::says_size;
-use super::size_unit::SizeUnit;
+use super::size_unit::{SizeUnit, is_also_a_word};
 use crate::fault::Fault;
 use crate::text::fields::shown;
 
@@ -67,10 +67,15 @@ fn asked((_, word, line): &Found) -> Fault {
     Fault::at(*line, what, remedy)
 }
 
-/// The words of a line in small letters, with the inches' sign; one that ends in a colon or an equals sign keeps it.
+/// Between what brackets, commas and semicolons part.
+const BREAK: &str = "|";
+
+/// The words of a line in small letters, with the inches' sign, colons and equals signs as words, and [`BREAK`]s.
 fn words(text: &str) -> Vec<String> {
     let small = text.to_lowercase().replace([':', '='], " : ");
-    let parts = small.split(|c: char| !(c.is_alphanumeric() || "\"″':²³%.-".contains(c)));
+    let breaks = ['(', ')', '[', ']', ',', ';', '|'];
+    let small = small.replace(breaks, &format!(" {BREAK} "));
+    let parts = small.split(|c: char| !(c.is_alphanumeric() || "\"″':²³%.-|".contains(c)));
     let words = parts.map(|word| word.trim_matches(['.', '-']));
     words
         .filter(|word| !word.is_empty())
@@ -106,17 +111,12 @@ fn unit_at(words: &[String], at: usize) -> Option<(SizeUnit, &str)> {
     let unit = SizeUnit::of(word)?;
     let before = at.checked_sub(1).and_then(|before| words.get(before));
     let is_measure = before.is_some_and(|before| before.ends_with(|c: char| c.is_ascii_digit()));
-    let is_a_word = word.chars().count() < 3
-        && !["mm", "cm", "dm", "ft", "um", "µm", "μm", "мм", "см"].contains(&word)
-        || [
-            "mil", "pie", "pol", "cal", "tum", "fot", "metro", "thou", "mils",
-        ]
-        .contains(&word);
-    let counts = !is_measure && (!is_a_word || is_stated(words, at));
+    let counts = !is_measure && (!is_also_a_word(word) || is_stated(words, at));
     counts.then_some((unit, word))
 }
 
-/// Whether the line says that the word there is the sizes' unit: "unit: cm", "units of size are cm", "all sizes in cm".
+/// Whether the line says that the word there is the sizes' unit: "unit: cm", "units of size are cm", "all sizes in cm". A unit of something
+/// else ("Hole diameter in inches: 6.5", "Pile size in m") is not.
 fn is_stated(words: &[String], at: usize) -> bool {
     let fill = [
         "of",
@@ -124,22 +124,30 @@ fn is_stated(words: &[String], at: usize) -> bool {
         "is",
         "are",
         "all",
+        "alle",
+        "todos",
+        "todas",
         "given",
-        "size",
-        "sizes",
         "length",
         "lengths",
-        "sieve",
-        "sieves",
+        "fragment",
+        "fragments",
+        "particle",
+        "particles",
+        "grain",
+        "rock",
         ":",
         "der",
+        "die",
         "de",
+        "los",
+        "las",
         "sind",
         "ist",
         "measured",
         "angegeben",
     ];
-    let (mut through_in, mut through_colon) = (false, false);
+    // "all dimensions in mm"
     let of_all = [
         "dimensions",
         "measures",
@@ -150,21 +158,35 @@ fn is_stated(words: &[String], at: usize) -> bool {
         "mesures",
         "misure",
     ];
-    for before in words.iter().take(at).rev().take(6) {
-        let word = before.as_str();
+    let of_this = |place: usize| words.get(place).map(String::as_str);
+    let (mut through_in, mut through_colon, mut says) = (false, false, false);
+    for place in (0..at).rev() {
+        let Some(word) = of_this(place).filter(|word| *word != BREAK) else {
+            break;
+        };
         if UNITS.contains(&word) {
             return true;
         }
-        if (through_in || through_colon) && (says_size(word) || of_all.contains(&word)) {
-            return true;
-        }
+        let is_of_all = of_all.contains(&word);
+        let is_size = (through_in || through_colon) && (says_size(word) || is_of_all);
+        says |= is_size;
         through_in |= IN.contains(&word);
         through_colon |= word == ":";
-        if !fill.contains(&word) && !IN.contains(&word) {
-            return false;
+        if !(is_size || says_size(word) || fill.contains(&word) || IN.contains(&word)) {
+            says = false;
+            break;
         }
     }
-    false
+    let behind = words.iter().skip(at + 1).find(|word| *word != ":");
+    let is_measure = behind.is_some_and(|word| word.starts_with(|c: char| c.is_ascii_digit()));
+    // "Units,inches" is in two cells.
+    let first = words
+        .iter()
+        .take(at)
+        .find(|word| *word != BREAK && *word != ":");
+    let is_named = first.is_some_and(|word| UNITS.contains(&word.as_str()))
+        && words.iter().take(at).filter(|word| *word != BREAK).count() <= 2;
+    says && !is_measure || is_named
 }
 
 #[cfg(test)]
@@ -186,6 +208,7 @@ mod tests {
             ("Sizes are given in mm", Some(LengthUnit::Millimetre)),
             ("Einheit der Siebweite: Zoll", Some(inch)),
             ("Tamaños en pulgadas", Some(inch)),
+            ("All dimensions in mm", Some(LengthUnit::Millimetre)),
             ("bench 12 m, sample of 30 cm, in the north pit", None),
             ("Laboratory of Dr. May, in Cali", None),
             ("", None),
@@ -203,6 +226,13 @@ mod tests {
             "Sieve analysis (cm)",
             "Units: cm\nall sizes in inches",
             "Units: cm\nplotted in mm",
+            "Hole diameter in inches: 6.5",
+            "Blast hole diameter in inches",
+            "Bohrlochdurchmesser in Zoll: 3.5",
+            "Pixel size in cm: 0.21",
+            "Scale object diameter in cm: 25",
+            "Burden and spacing measurements in ft",
+            "Top size: cm 80",
         ] {
             let header = 1 + text.lines().count() as u64;
             let found = Above::of(&format!("{text}\nsize\n"), header);

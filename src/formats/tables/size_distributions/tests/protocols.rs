@@ -449,3 +449,60 @@ fn laboratories_write_german_french_and_spanish() {
         assert_eq!(set.curves[0].distribution.points(), wanted, "{text}");
     }
 }
+
+/// What stays on sieves under a name that says so in short, and under one that nobody knows: something in the pan tells.
+#[test]
+fn something_in_the_pan_is_retained() {
+    for name in ["% Ret.", "% retida", "Rückstände [%]"] {
+        let (set, _) = read(&format!("Sieve (mm);{name}\n16;40\n8;30\n4;10\npan;20\n"));
+        let points = set.curves[0].distribution.points();
+        assert_eq!(points, [[4.0, 20.0], [8.0, 30.0], [16.0, 60.0]], "{name}");
+    }
+    let (_, fault) = fault("Sieve (mm),Wt. %\n16,40\n8,30\n4,10\npan,20\n");
+    assert!(fault.contains("has 20 in the pan"), "{fault}");
+    // Nothing passes the pan.
+    let (set, _) = read("Sieve (mm),sample A\n16,100\n8,30\n4,10\npan,0\n");
+    assert_eq!(set.curves[0].distribution.points().len(), 3);
+}
+
+/// ASTM C136's sheet: "Pan" and "Total" stand under the names of sieves, with no opening.
+#[test]
+fn pan_and_total_in_another_column() {
+    let head = "Sieve,Size (mm),Weight Retained (g)";
+    let rows = "1 1/2,37.5,0\n3/4,19,200\n3/8,9.5,500\nPan,,300\nTotal,,1000\n";
+    let (set, _) = read(&format!("{head}\n{rows}"));
+    let points = set.curves[0].distribution.points();
+    assert_eq!(points, [[9.5, 30.0], [19.0, 80.0], [37.5, 100.0]]);
+    let head = "Sieve,Size (mm),% Retained,% Passing";
+    let rows = "1 1/2,37.5,0,100\n3/4,19,20,80\n3/8,9.5,50,30\nPan,,30,0\nTotal,,100,\n";
+    let (set, _) = read(&format!("{head}\n{rows}"));
+    assert_eq!(set.curves[0].distribution.points(), points);
+}
+
+/// Percents retained as shares of 1 were 99 % passing.
+#[test]
+fn shares_retained() {
+    let whole = "sieve_mm,cumulative % retained\n64,0\n32,0.2\n16,0.55\n8,1\n";
+    let (set, said) = read(whole);
+    assert_eq!(set.curves[0].distribution.points()[1], [16.0, 45.0]);
+    assert!(
+        said.iter().any(|said| said.contains("shares of 1")),
+        "{said:?}"
+    );
+    let each = "sieve_mm,individual % retained\n64,0\n32,0.2\n16,0.35\n8,0.25\npan,0.2\n";
+    let (set, _) = read(each);
+    let points = set.curves[0].distribution.points();
+    for (point, wanted) in points.iter().zip([20.0, 45.0, 80.0, 100.0]) {
+        assert!((point[1] - wanted).abs() < 1e-9, "{points:?}");
+    }
+    for text in [
+        "sieve_mm,cumulative % retained\n64,0\n32,0.2\n16,0.55\n8,0.8\n4,0.9\n",
+        "sieve_mm,individual % retained\n64,0\n32,0.2\n16,0.35\n8,0.25\n4,0.1\n",
+    ] {
+        let (_, fault) = fault(text);
+        assert!(fault.contains("as shares of 1 do"), "{fault}");
+    }
+    // With signs they are percents.
+    let (set, _) = read("sieve_mm,cumulative % retained\n64,0%\n32,0.2%\n16,0.9%\n");
+    assert!((set.curves[0].distribution.points()[0][1] - 99.1).abs() < 1e-9);
+}

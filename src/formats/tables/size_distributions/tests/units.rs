@@ -52,6 +52,55 @@ fn units_in_the_languages_of_laboratories() {
     assert_eq!(said, ["sizes in yards are taken for ft times 3"]);
 }
 
+/// A unit in the midst of the name is one, too: without it sizes were 25 times too small.
+#[test]
+fn a_unit_stands_anywhere_in_the_name() {
+    for (header, mm) in [
+        ("Sieve size (inches) - square opening;Percent passing", 25.4),
+        ("Size (in) nominal;passing", 25.4),
+        ("Opening in inches (square);passing", 25.4),
+        ("Size cm (square hole);passing", 10.0),
+        ("Size in cm, nominal;passing", 10.0),
+        ("size (m) [square];passing", 1000.0),
+        ("Size (Zoll) x;passing", 25.4),
+        ("Particle Diameter (µm) Lower;% finer", 0.001),
+        ("Particle diameter um (volume);% finer", 0.001),
+    ] {
+        let found = p50_mm(&table(header, mm));
+        assert!((found / 120.0 - 1.0).abs() < 1e-6, "{header}: {found}");
+    }
+    let found = p50_mm("photo,P20 (in) mean,P50 (in) mean,P80 (in) mean\na,2,4.7244094488,9\n");
+    assert!((found / 120.0 - 1.0).abs() < 1e-6, "{found}");
+    for header in ["Sieve size in. or mm", "Size (mm) or cm", "Size φ"] {
+        let text = format!("{header},passing\n4,10\n8,20\n");
+        assert!(
+            size_distributions(&text, &DistributionColumns::default()).is_err(),
+            "{header}"
+        );
+    }
+}
+
+/// Names that instruments and laboratories give what passes, and the numbers of sieves.
+#[test]
+fn names_of_instruments() {
+    for header in [
+        "Size Classes (μm),Volume Density (%),Volume Cumulative (%)",
+        "Channel Diameter um,Diff. Volume %,Cum. < Volume %",
+        "Size (μm),% Volume In,% Volume Under",
+    ] {
+        let (set, _) = read(&format!("{header}\n2,5,5\n5,15,20\n10,50,70\n20,30,100\n"));
+        let points = set.curves[0].distribution.points();
+        assert_eq!(points.last(), Some(&[0.02, 100.0]), "{header}");
+        assert_eq!(points[1][1], 20.0, "{header}");
+    }
+    for header in ["Sieve No. (ASTM)", "US Standard Sieve No."] {
+        let (set, _) = read(&format!("{header},percent passing\nNo. 4,100\nNo. 10,40\n"));
+        assert_eq!(set.curves[0].distribution.points()[1], [4.75, 100.0]);
+    }
+    let (set, _) = read("Tamiz,% que pasa\nN° 4,100\nNº 10,40\nN.º 40,5\n");
+    assert_eq!(set.curves[0].distribution.points()[2], [4.75, 100.0]);
+}
+
 #[test]
 fn what_stays_is_understood_in_them_too() {
     for header in [
@@ -256,6 +305,14 @@ fn names_that_differ_by_their_spelling_are_said() {
     assert_eq!(set.curves.len(), 2);
     assert_eq!(
         said,
-        ["'Sieve / 1' and 'sieve / 01' are two curves, whose names differ by their spelling alone"]
+        [
+            "'Sieve' and 'sieve' are two methods, whose names differ by their spelling alone",
+            "'Sieve / 1' and 'sieve / 01' are two curves, whose names differ by their spelling alone"
+        ]
     );
+    // Two trials of one method are two methods by a capital letter.
+    let (_, said) = read(
+        "method,trial,size_mm,passing\nSieve,1,1,10\nSieve,1,2,90\nsieve,2,1,20\nsieve,2,2,80\n",
+    );
+    assert_eq!(said.len(), 1, "{said:?}");
 }
