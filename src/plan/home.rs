@@ -6,18 +6,21 @@ use glam::DVec2;
 use super::keep_out::KeepOut;
 use super::{LostSignal, Plan, Way};
 
-/// The height in the world from which the drone comes straight home from every photo, rising to it where it is, and keeps the
-/// clearance: never below the safe height of the ways. `None` without a way.
+/// The height in the world from which the drone comes straight home from anywhere on its way, also from between two stops,
+/// rising to it where it is, and keeps the clearance: never below the safe height of the ways. `None` without a way.
 pub fn return_height(plan: &Plan, ways: &[Way]) -> Option<f64> {
-    let take_off = ways.first()?.take_off.truncate();
     let clearance = plan.wish.clearance;
-    let over = plan.photos.iter().filter_map(|photo| {
-        let from = photo.pose.center.truncate();
-        let ground = plan.terrain.highest_along(from, take_off, clearance);
-        Some(ground? + clearance)
+    let over = ways.iter().flat_map(|way| {
+        let home = way.take_off.truncate();
+        let corners = way.corners();
+        let tops = corners.windows(2).filter_map(|leg| {
+            let triangle = [leg[0].truncate(), leg[1].truncate(), home];
+            plan.terrain.highest_in(triangle, clearance)
+        });
+        let highest = tops.reduce(f64::max);
+        [Some(way.safe_height), highest.map(|top| top + clearance)]
     });
-    let safe = ways.iter().map(|way| way.safe_height);
-    Some(over.chain(safe).fold(f64::MIN, f64::max))
+    over.flatten().reduce(f64::max)
 }
 
 /// A height to come home at as it is set at a drone: rounded up to a whole unit. A rounding error above a whole one is that one.

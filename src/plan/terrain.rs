@@ -249,16 +249,50 @@ impl Terrain {
 
     /// The highest of the surface within `reach` of the line between two places; `None` where there is none.
     pub fn highest_along(&self, from: DVec2, to: DVec2, reach: f64) -> Option<f64> {
-        let reach = reach + self.raster.pixel * FRAC_1_SQRT_2;
-        // What is seen from one look reaches to the next.
-        along(
-            from.extend(0.0),
-            to.extend(0.0),
-            (reach / 2.0).max(self.raster.pixel),
-        )
-        .flat_map(|place| self.tops_around(place.truncate(), reach))
-        .map(|point| point.z)
-        .reduce(f64::max)
+        self.highest_in([from, to, to], reach)
+    }
+
+    /// The highest of the surface within `reach` of a triangle of the map, along both axes; `None` where there is none. It looks
+    /// at each pixel once, row by row: between home and the legs of a survey lie many triangles.
+    pub(super) fn highest_in(&self, triangle: [DVec2; 3], reach: f64) -> Option<f64> {
+        let corners = triangle.map(|corner| self.raster.pixel_from_world(corner));
+        let reach = reach / self.raster.pixel + FRAC_1_SQRT_2;
+        // Pixels whose middles lie in a range; `as` saturates.
+        let pixels = |[least, most]: [f64; 2], count: u32| {
+            let first = (least - reach - 0.5).ceil().max(0.0) as u32;
+            first..((most + reach - 0.5).floor() + 1.0).clamp(0.0, f64::from(count)) as u32
+        };
+        let range = |numbers: &mut dyn Iterator<Item = f64>| {
+            numbers.fold([f64::MAX, f64::MIN], |[least, most], number| {
+                [least.min(number), most.max(number)]
+            })
+        };
+        let rows = pixels(
+            range(&mut corners.iter().map(|corner| corner.y)),
+            self.raster.rows,
+        );
+        let tops = rows.flat_map(|row| {
+            let [low, high] = [-reach, reach].map(|off| f64::from(row) + 0.5 + off);
+            // Where the sides are that near to the row: what of the triangle is, lies between them.
+            let mut ends = (0..3).flat_map(|side| {
+                let (from, to) = (corners[side], corners[(side + 1) % 3]);
+                let is_near = from.y.min(to.y) <= high && from.y.max(to.y) >= low;
+                let x_at = move |end: DVec2| {
+                    let y = end.y.clamp(low, high);
+                    match y == end.y {
+                        true => end.x,
+                        false => from.x + (y - from.y) / (to.y - from.y) * (to.x - from.x),
+                    }
+                };
+                is_near
+                    .then(|| [x_at(from), x_at(to)])
+                    .into_iter()
+                    .flatten()
+            });
+            let columns = pixels(range(&mut ends), self.raster.columns);
+            columns.filter_map(move |column| Some(self.point_of(&self.tops, [column, row])?.z))
+        });
+        tops.reduce(f64::max)
     }
 
     /// Whether a straight leg is nearer than `clearance` to the surface anywhere.

@@ -42,7 +42,7 @@ pub struct Mission {
     /// Metres above the place of take-off that the drone climbs to before it flies to the first stop;
     /// `None` where it is left to the ground station.
     pub safe_height: Option<f64>,
-    /// Metres above the place of take-off from which the drone comes straight home from every stop over all that stands there;
+    /// Metres above the place of take-off from which the drone comes straight home from anywhere on its way over all that stands there;
     /// `None` where nobody says it.
     pub return_height: Option<f64>,
     /// What happens behind the last stop.

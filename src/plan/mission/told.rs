@@ -69,7 +69,7 @@ pub fn missions(
     told: &Told,
 ) -> Result<Vec<(String, Mission)>, Fault> {
     is_over_ground(told.unit, crs)?;
-    // Of all photos: the pilot sets one, whatever battery is flown.
+    // Of all ways: the pilot sets one, whatever battery is flown.
     let home = (return_height(plan, ways), lost_signal(plan, ways));
     let numbered = ways.iter().zip(1..).map(|(way, number)| {
         let battery = match ways.len() {

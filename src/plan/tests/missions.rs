@@ -59,15 +59,57 @@ fn the_way_home_is_over_all_that_stands_there() {
     });
     let mut plan = plan(&surface, 20.0, wish(Pattern::Slope));
     let home = DVec2::new(500_000.0, 5_000_000.0 - 60.0);
-    let way = ways((&plan, &surface), home, None).unwrap();
+    let mut way = ways((&plan, &surface), home, None).unwrap();
     let low = return_height(&plan, &way).unwrap();
     assert_eq!(low, way[0].safe_height, "nothing higher stands there");
     let mut beyond = plan.photos[0].clone();
     beyond.pose.center = DVec3::new(500_100.0, 5_000_000.0 - 60.0, 170.0);
+    way[0].points.push(WayPoint {
+        place: beyond.pose.center,
+        photo: Some(plan.photos.len()),
+    });
     plan.photos.push(beyond);
     let high = return_height(&plan, &way).unwrap();
     let wanted = 160.0 + plan.wish.clearance;
     assert!((wanted..wanted + 0.5).contains(&high), "{high} {wanted}");
+}
+
+/// A tower between home and the middle of a leg, which no line from a stop to home comes near, from a photo to a place without
+/// one: the drone may be called home there. Beside the triangle of leg and home a tower stands in no way.
+#[test]
+fn the_way_home_from_between_stops_is_over_all_that_stands_there() {
+    let home = DVec2::new(500_000.0, 5_000_000.0 - 60.0);
+    let at = |x: f64| DVec3::new(500_000.0 + x, 5_000_000.0, 120.0);
+    for (tower, stands_in_it) in [
+        ((10.0, -10.0), true),
+        ((-30.0, -12.0), true),
+        ((0.0, 4.0), true),
+        ((0.0, 9.0), false),
+        ((45.0, -12.0), false),
+        ((-20.0, -48.0), false),
+    ] {
+        let surface = surface(|place| match place == DVec2::from(tower) {
+            true => 145.0,
+            false => 100.0,
+        });
+        let mut plan = plan(&surface, 20.0, wish(Pattern::Slope));
+        let mut way = ways((&plan, &surface), home, None).unwrap();
+        plan.photos.truncate(1);
+        plan.photos[0].pose.center = at(-40.0);
+        way[0].points = [(-40.0, Some(0)), (40.0, None)]
+            .map(|(x, photo)| WayPoint {
+                place: at(x),
+                photo,
+            })
+            .to_vec();
+        way[0].safe_height = 120.0;
+        let height = return_height(&plan, &way).unwrap();
+        let wanted = match stands_in_it {
+            true => 145.0 + plan.wish.clearance,
+            false => 120.0,
+        };
+        assert!((height - wanted).abs() < 1e-6, "{tower:?}: {height}");
+    }
 }
 
 /// An area to keep out of between the photos and home: the way goes around it, the straight way home would not, and the drone is
