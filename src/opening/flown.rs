@@ -108,7 +108,7 @@ pub fn compare_flown(
 const HEIGHT_OFF: f64 = 5.0;
 /// As many times as far as they are from each other: they are off alike.
 const ALIKE: f64 = 5.0;
-/// Within so many metres of the geoid's height above the ellipsoid it is that.
+/// Within so many metres of the geoid's height above the ellipsoid it may be that, where that is twice as much.
 const OF_GEOID: f64 = 3.0;
 
 /// That all photos are higher or lower than their plans by the same, in a sentence: heights that count from two datums, or a
@@ -128,9 +128,11 @@ fn heights_off(
     let place = crs.to_geographic(planned.first()?.pose.center)?;
     let geoid = geoid_height(place.latitude, place.longitude);
     let higher = if middle > 0.0 { "higher" } else { "lower" };
-    let why = match (middle.abs() - geoid.abs()).abs() < OF_GEOID {
+    // Where both lie near each other a drone's own heights are as much off.
+    let may_be = geoid.abs() > 2.0 * OF_GEOID && (middle.abs() - geoid.abs()).abs() < OF_GEOID;
+    let why = match may_be {
         true => format!(
-            "the geoid lies {:.1} m off the ellipsoid there, so the heights of photos and surface count from the one and the other: bring them to the same",
+            "it may have taken off elsewhere, or heights count from two datums: the geoid lies {:.1} m off the ellipsoid there; look from what those of photos and surface count",
             geoid.abs()
         ),
         false => "look whether it took off where the mission says, and whether the heights of photos and surface count from the same".to_owned(),
@@ -139,4 +141,57 @@ fn heights_off(
         "all photos are {:.1} m {higher} than planned: {why}",
         middle.abs()
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use fragscale_core::plan::Residual;
+
+    use super::*;
+    use crate::camera::Pose;
+
+    /// What is said of three photos over a place east of 300 km that are so much higher than planned.
+    fn said(east: f64, higher: f64) -> String {
+        let center = DVec3::new(east, 6_600_000.0, 100.0);
+        let planned = PlannedPose {
+            name: String::new(),
+            pose: Pose::from_tilt_pan(center, [90.0, 0.0]),
+        };
+        let residual = Residual {
+            photo: 0,
+            offset: DVec3::new(0.0, 0.0, higher),
+            tilt: 0.0,
+            pan: 0.0,
+            turn: 0.0,
+            shared: None,
+        };
+        let flown = Flown {
+            residuals: vec![Some(residual); 3],
+            unplanned: Vec::new(),
+        };
+        let crs = Crs::understand("EPSG:32753").unwrap();
+        heights_off(&[planned], &flown, &crs, LengthUnit::Metre).unwrap()
+    }
+
+    /// In South Australia the geoid crosses the ellipsoid: where both are nearly one, a take-off that is 5 m off is not laid to them.
+    #[test]
+    fn a_geoid_that_lies_near_the_ellipsoid_is_no_cause() {
+        let crs = Crs::understand("EPSG:32753").unwrap();
+        let geoid = |east: f64| {
+            let place = crs.to_geographic(DVec3::new(east, 6_600_000.0, 0.0));
+            place.map(|place| geoid_height(place.latitude, place.longitude))
+        };
+        let east = |least: f64, most: f64| {
+            let places = (0..600).map(|at| 200_000.0 + 1000.0 * f64::from(at));
+            let mut near = places.filter(|east| {
+                geoid(*east).is_some_and(|height| (least..most).contains(&height.abs()))
+            });
+            near.next().unwrap()
+        };
+        let near = said(east(3.0, 5.9), 5.2);
+        assert!(!near.contains("geoid"), "{near}");
+        let off = east(7.0, 12.0);
+        let far = said(off, geoid(off).unwrap().abs());
+        assert!(far.contains("geoid") && far.contains("may"), "{far}");
+    }
 }
