@@ -98,10 +98,10 @@ pub(super) fn commands(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec
         "the file is for ArduPilot's Copter; PX4 does not take the command that turns (115)"
             .to_owned(),
     );
-    if let Some(height) = mission.return_height {
+    if let Some(height) = mission.return_height.map(set_height) {
         notes.push(format!(
-            "the file does not say how high the drone comes home: set ArduPilot's RTL_ALT to {} m or more",
-            set_height(height)
+            "the file does not say how high the drone comes home: set ArduPilot's RTL_ALT to {} or more (centimetres; RTL_ALT_M {height} in newer versions)",
+            100.0 * height
         ));
     }
     if mission.lost_signal == Some(LostSignal::Hover) {

@@ -489,7 +489,10 @@ fn the_height_to_come_home_at_is_told() {
     assert!(notes(&unsaid, MissionFormat::DjiWpml).contains("nobody says from which height"));
     assert!(!notes(&mission(), MissionFormat::DjiWpml).contains("nobody says from which height"));
     for format in [MissionFormat::Waypoints, MissionFormat::QGroundControl] {
-        assert!(notes(&mission(), format).contains("RTL_ALT to 33 m or more"));
+        assert!(
+            notes(&mission(), format)
+                .contains("RTL_ALT to 3300 or more (centimetres; RTL_ALT_M 33 in newer versions)")
+        );
     }
     assert!(
         notes(&mission(), MissionFormat::Litchi).contains("return-to-home height to 33 m or more")
