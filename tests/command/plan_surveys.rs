@@ -303,3 +303,37 @@ fn what_a_pattern_does_not_do_is_refused() {
         assert!(error.contains(what), "{more:?} {error}");
     }
 }
+
+/// Over a heap photos of a survey share less: which overlap is enough there is said, and who follows that is not warned again.
+#[test]
+fn an_overlap_that_is_advised_is_enough() {
+    let folder = tempfile::tempdir().unwrap();
+    let flight = plane(folder.path());
+    let mut points = String::new();
+    for i in 0..41 * 41 {
+        let (x, y) = (f64::from(i % 41) * 5.0, f64::from(i / 41) * 5.0);
+        let z = 300.0 + (25.0 - (x - 100.0).hypot(y - 100.0)).max(0.0);
+        points += &format!("{} {} {z}\n", 450_000.0 + x, 5_400_000.0 + y);
+    }
+    fs::write(folder.path().join("plane.xyz"), points).unwrap();
+    let warned = |overlap: &str| {
+        let survey = ["--pattern", "survey", "--no-ring"];
+        let output = planned(
+            &flight,
+            &[&survey[..], &["--survey-overlap", overlap]].concat(),
+        );
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        said
+    };
+    for overlap in ["70", "50"] {
+        let said = warned(overlap);
+        let (_, behind) = said.split_once("a survey's overlap of ").expect(&said);
+        let advised = behind.split(' ').next().unwrap();
+        let again = warned(advised);
+        assert!(
+            !again.contains("a survey's overlap of"),
+            "{advised}: {again}"
+        );
+    }
+}

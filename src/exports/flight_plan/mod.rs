@@ -217,13 +217,13 @@ pub fn kinds_in_words(plan: &Plan) -> Option<String> {
         .then(|| format!("{scales} for scales (P), {survey} of the survey (S)"))
 }
 
-/// How much photos of the survey share with the next, as it was wished and where the ground of the area comes nearest to them;
+/// How much photos of the survey share with the next, in the mean and where the ground of the area comes nearest to them;
 /// `None` where no photo of a survey looks straight down.
 pub(crate) fn overlap_in_words(plan: &Plan) -> Option<String> {
-    let (wished, least) = (plan.wish.survey.overlap, plan.cover.least_overlap?);
+    let (mean, least) = (plan.wish.survey.overlap, plan.cover.least_overlap?);
     Some(format!(
         "{} in the mean, {} over the highest of the area",
-        percent(wished),
+        percent(mean),
         percent(least.max(0.0))
     ))
 }

@@ -7,8 +7,10 @@ use fragscale_core::plan::homes_over_keep_out;
 
 /// Of a survey that shows less of the area three times it is said.
 const SURVEYED: f64 = 0.97;
-/// Of a survey whose photos share by more less over the highest of the area than was wished it is said.
+/// Of a survey whose photos share by more less over the highest of the area than in its mean it is said.
 const LESS_OVERLAP: f64 = 0.05;
+/// But where they share as much a reconstruction finds enough: who follows the advice is not given it again.
+const ENOUGH_OVERLAP: f64 = 0.65;
 
 /// What is to be said of a plan beside its numbers, one sentence each.
 pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
@@ -39,17 +41,18 @@ pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
             "{less} of the area is in fewer than three photos of the survey: it may be missing in a reconstruction; give the survey more overlap"
         ));
     }
-    if let Some(least) =
-        (plan.cover.least_overlap).filter(|least| *least < plan.wish.survey.overlap - LESS_OVERLAP)
+    let overlap = plan.wish.survey.overlap;
+    if let Some(least) = (plan.cover.least_overlap)
+        .filter(|least| *least < ENOUGH_OVERLAP.min(overlap - LESS_OVERLAP))
     {
         // 1 - (1 - overlap) * ratio is what is left: the ratio stays what it is.
-        let wished = plan.wish.survey.overlap;
-        let needed = 1.0 - (1.0 - wished).powi(2) / (1.0 - least);
+        let needed = 1.0 - (1.0 - overlap) * (1.0 - ENOUGH_OVERLAP) / (1.0 - least);
         said.push(format!(
-            "photos of the survey share {} with the next over the highest of the area, and {} in its mean: a survey's overlap of {:.0} % is that everywhere",
+            "photos of the survey share {} with the next over the highest of the area, and {} in its mean: a survey's overlap of {:.0} % leaves {:.0} % there",
             percent(least.max(0.0)),
-            percent(wished),
-            (100.0 * needed).ceil()
+            percent(overlap),
+            (100.0 * needed).ceil(),
+            100.0 * ENOUGH_OVERLAP
         ));
     }
     let off = plan.wish.errors.off_place();
