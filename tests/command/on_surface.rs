@@ -164,6 +164,11 @@ fn what_cannot_be_measured_is_one_line() {
             vec!["volume", "--polygon", "0,0;1,0;1,1", "--base", "0"],
             "beside the surface",
         ),
+        // Over the plane of a rim, too, of which nothing lies on it.
+        (
+            vec!["volume", "--polygon", "0,0;1,0;1,1"],
+            "beside the surface",
+        ),
         (
             vec!["volume", "--polygon", "0,0;2,2;2,0;0,2"],
             "cross or touch",

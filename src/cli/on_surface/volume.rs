@@ -14,7 +14,7 @@ use crate::formats::FileError;
 use crate::geodesy::Crs;
 use crate::jobs::Progress;
 use crate::opening::{Areas, StatedWorld, volume_base};
-use crate::survey::{self, Base};
+use crate::survey::{self, Base, SurveyError, Volume};
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct VolumeArguments {
@@ -99,12 +99,21 @@ pub(in crate::cli) fn volume(
         _ => Base::Rim,
     };
     progress.stage("measuring");
-    let volume = survey::volume(&parts.surface, &polygon, base).map_err(|e| e.to_string())?;
-    if volume.covered <= 0.0 && volume.bodies == 0.0 {
+    let over = |base| survey::volume(&parts.surface, &polygon, base);
+    let is_beside = |volume: &Volume| volume.covered <= 0.0 && volume.bodies == 0.0;
+    let volume = match over(base) {
+        // Where all of it lies beside the surface that is said: no other base would help.
+        Err(error @ SurveyError::RimNotCovered(..)) => {
+            let all = over(Base::Height(0.0)).ok();
+            all.filter(is_beside).ok_or(error)
+        }
+        measured => measured,
+    };
+    let volume = volume.map_err(|e| e.to_string())?;
+    if is_beside(&volume) {
         // Over the other surface alone, if it is not the polygon that lies beside the flight's.
         if let Some(base) = base_file
-            && survey::volume(&parts.surface, &polygon, Base::Rim)
-                .is_ok_and(|own| own.covered > 0.0)
+            && over(Base::Rim).is_ok_and(|own| own.covered > 0.0)
         {
             let what = "it lies beside the polygon, or has a hole there";
             let remedy = "give a surface of the same place, in the same coordinates";
