@@ -3,8 +3,9 @@
 //! By names, where these say it: all planned photos have one of theirs, or all that were taken are named for a planned one, also
 //! behind what the camera calls them (DJI adds the name to its own: `DJI_20260601_0001_P001.JPG`). Else by place and by where the
 //! camera looks, once what all are off alike is taken off: a receiver's error over a flight is nearly the same in all its photos,
-//! and stops lie nearer together than that. Where the photos' names count in the order of the mission, which cameras do, the
-//! order decides between those that are alike (an alignment of both, as of sequences: Needleman & Wunsch 1970).
+//! and stops lie nearer together than that. So it is looked for from several starts, and what fits best is taken. Where the photos'
+//! names count in the order of the mission, which cameras do, the order decides between those that are alike (an alignment of both,
+//! as of sequences: Needleman & Wunsch 1970).
 
 use std::cmp::Ordering;
 use std::collections::{HashMap, HashSet};
@@ -28,10 +29,12 @@ const LEAST_OFF: f64 = 0.02;
 /// Photos of which any two follow each other by their names as in the mission are in its order; so many parts of all pairs more
 /// than those that do not.
 const IN_ORDER: f64 = 0.8;
-/// How often pairs and what all are off are found from each other.
+/// How often pairs and what all are off are found from each other, from each start.
 const ROUNDS: usize = 5;
 /// Of fewer nobody knows what all are off.
 const LEAST: usize = 3;
+/// Pairs that cost less by more than so many parts of what their distances cost fit better; else that is by chance.
+const BY_CHANCE: f64 = 0.5;
 /// The most pairs of all with all that an alignment is made of: 25 MB.
 const MOST_ALIGNED: usize = 25_000_000;
 
@@ -99,6 +102,8 @@ struct Matching<'a> {
     taken: &'a [Taken<'a>],
     /// How far each photo may be from its plan.
     farthest: Vec<f64>,
+    /// The farthest of all.
+    most: f64,
 }
 
 impl<'a> Matching<'a> {
@@ -112,26 +117,84 @@ impl<'a> Matching<'a> {
             });
             places.fold(f64::MIN_POSITIVE, f64::max)
         };
-        let usual = known.reduce(f64::max).unwrap_or_else(all);
+        let most = known.reduce(f64::max).unwrap_or_else(all);
         Self {
             planned,
             taken,
-            farthest: farthest.iter().map(|own| own.unwrap_or(usual)).collect(),
+            farthest: farthest.iter().map(|own| own.unwrap_or(most)).collect(),
+            most,
         }
     }
 
+    /// What all are off and the pairs are found from each other, from several starts: where stops lie near each other, one start
+    /// alone may end with every photo at the stop beside its own, or at one of another height.
     fn pairs(&self) -> Vec<Option<usize>> {
         let by_name = self.order_of_names();
-        let mut off = DVec3::Z * self.height_off();
-        let mut chosen = self.matched(off, &by_name);
+        let mut known: Vec<DVec3> = Vec::new();
+        let mut best: Option<Fit> = None;
+        for start in self.starts(&by_name) {
+            let Some(fit) = self.fit(start, &by_name, &mut known) else {
+                continue;
+            };
+            if best.as_ref().is_none_or(|best| fit.is_better_than(best)) {
+                best = Some(fit);
+            }
+        }
+        best.map_or_else(|| vec![None; self.planned.len()], |best| best.chosen)
+    }
+
+    /// What all may be off: nothing; as much higher as those on the map; where there are as many photos as stops, what each is off
+    /// the stop of its number, in the middle; what the middles of all are off each other. None beside the stop by more
+    /// than a photo may be from its plan: that would be another place.
+    fn starts(&self, by_name: &[usize]) -> Vec<DVec3> {
+        let mut starts = vec![DVec3::ZERO, DVec3::Z * self.height_off()];
+        let (planned, taken) = (self.planned.len(), self.taken.len());
+        if planned.min(taken) < LEAST {
+            return starts;
+        }
+        let in_order: Vec<Option<usize>> = by_name.iter().copied().map(Some).collect();
+        let in_order = (planned == taken).then(|| self.all_are_off(&in_order));
+        let stops: DVec3 = self.planned.iter().map(|plan| plan.pose.center).sum();
+        let photos: DVec3 = self.taken.iter().map(|taken| taken.pose.center).sum();
+        let middles = photos / taken as f64 - stops / planned as f64;
+        let more = in_order.flatten().into_iter().chain([middles]);
+        starts.extend(more.filter(|off| off.truncate().length() <= self.most));
+        starts
+    }
+
+    /// Where the rounds lead to from a start; `None` where others came by there: `known` are what all were off in their rounds.
+    fn fit(&self, start: DVec3, by_name: &[usize], known: &mut Vec<DVec3>) -> Option<Fit> {
+        let mut own = vec![start];
+        let mut off = start;
+        if known.contains(&off) {
+            return None;
+        }
+        let mut chosen = self.matched(off, by_name);
         for _ in 0..ROUNDS {
             let Some(next) = self.all_are_off(&chosen).filter(|next| *next != off) else {
                 break;
             };
+            if known.contains(&next) {
+                return None;
+            }
             off = next;
-            chosen = self.matched(off, &by_name);
+            own.push(off);
+            chosen = self.matched(off, by_name);
         }
-        chosen
+        known.extend(own);
+        let (mut away, mut looks_off) = (0.0, 0.0);
+        let pairs = chosen.iter().enumerate();
+        for (number, photo) in pairs.filter_map(|(number, photo)| Some((number, (*photo)?))) {
+            // In parts that are the same for all: else what was planned from farther away would fit better.
+            away += (self.away(number, photo, off)? / self.most).powi(2);
+            looks_off += self.looks_off(number, photo)?;
+        }
+        Some(Fit {
+            chosen,
+            off,
+            away,
+            looks_off,
+        })
     }
 
     /// The nearest ones, or, where these follow each other as their names do, those of an alignment.
@@ -145,17 +208,27 @@ impl<'a> Matching<'a> {
 
     /// What a pair costs, squares in parts of the farthest: 1 as far from its plan as it may be; `None` where it is farther.
     fn cost(&self, number: usize, photo: usize, off: DVec3) -> Option<f64> {
-        let (plan, taken) = (self.planned.get(number)?, self.taken.get(photo)?);
-        let away = (taken.pose.center - off).distance(plan.pose.center);
-        let away = away / self.farthest.get(number)?;
+        let away = self.away(number, photo, off)? / self.farthest.get(number)?;
         if away > 1.0 {
             return None;
         }
+        Some(away.powi(2) + self.looks_off(number, photo)?)
+    }
+
+    /// How far a photo is from a plan.
+    fn away(&self, number: usize, photo: usize, off: DVec3) -> Option<f64> {
+        let (plan, taken) = (self.planned.get(number)?, self.taken.get(photo)?);
+        Some((taken.pose.center - off).distance(plan.pose.center))
+    }
+
+    /// What it costs that a photo looks elsewhere than a plan.
+    fn looks_off(&self, number: usize, photo: usize) -> Option<f64> {
+        let (plan, taken) = (self.planned.get(number)?, self.taken.get(photo)?);
         let angle = |a: DVec3, b: DVec3| a.dot(b).clamp(-1.0, 1.0).acos().to_degrees();
         let [own, its] = [plan.pose.rotation, taken.pose.rotation];
         let turned = angle(own.z_axis, its.z_axis).min(TURNED) / TURNED;
         let rolled = angle(own.x_axis, its.x_axis) / 180.0;
-        Some(away.powi(2) + (TURNED_WEIGHS * turned).powi(2) + (ROLLED_WEIGHS * rolled).powi(2))
+        Some((TURNED_WEIGHS * turned).powi(2) + (ROLLED_WEIGHS * rolled).powi(2))
     }
 
     /// How much higher all photos are than the plan of each that is nearest on the map and looks alike: the take-off or the datum
@@ -316,6 +389,33 @@ impl<'a> Matching<'a> {
             used.extend(*own);
         }
         chosen
+    }
+}
+
+/// Pairs, and what all photos are off beside.
+struct Fit {
+    chosen: Vec<Option<usize>>,
+    off: DVec3,
+    /// What the distances of all pairs cost.
+    away: f64,
+    /// What it costs that they look elsewhere.
+    looks_off: f64,
+}
+
+impl Fit {
+    /// Whether it has clearly the better pairs: a plan without a photo costs as much as one as far off as may be, so that none is
+    /// moved to pair one more. Of two that fit alike photos are off by the least.
+    fn is_better_than(&self, other: &Self) -> bool {
+        let alone = |fit: &Self| fit.chosen.iter().filter(|photo| photo.is_none()).count() as f64;
+        let chance = |fit: &Self| {
+            let pairs = fit.chosen.iter().flatten().count() as f64;
+            BY_CHANCE * fit.away + LEAST_OFF.powi(2) * pairs
+        };
+        let [own, others] = [self, other].map(|fit| fit.away + fit.looks_off + alone(fit));
+        if own + chance(self) < others {
+            return true;
+        }
+        others + chance(other) >= own && self.off.length() < other.off.length()
     }
 }
 

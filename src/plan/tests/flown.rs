@@ -141,3 +141,135 @@ fn an_order_decides_between_photos_that_are_alike() {
     let wanted: Vec<usize> = (0..5).chain([19]).chain(5..19).collect();
     assert_eq!(paired(&late), wanted);
 }
+
+/// A number from -1 to 1 that has no order, for each photo and axis.
+fn noise(number: usize, axis: usize) -> f64 {
+    (number as f64 * 7.31 + axis as f64 * 3.7 + 1.0).sin()
+}
+
+fn straight_down(center: DVec3) -> Pose {
+    Pose::from_tilt_pan(center, [90.0, 0.0])
+}
+
+/// Which photo each planned one is found to be.
+fn found(
+    surface: &Surface,
+    planned: &[DVec3],
+    flown: &[DVec3],
+    name: fn(usize) -> String,
+) -> Vec<Option<usize>> {
+    let camera = camera();
+    let planned: Vec<PlannedPose> = (planned.iter().zip(1..))
+        .map(|(center, number)| PlannedPose {
+            name: format!("S{number:03}"),
+            pose: straight_down(*center),
+        })
+        .collect();
+    let poses: Vec<Pose> = flown.iter().copied().map(straight_down).collect();
+    let names: Vec<String> = (0..flown.len()).map(name).collect();
+    let taken: Vec<Taken<'_>> = (poses.iter().zip(&names))
+        .map(|(pose, name)| Taken {
+            name,
+            pose,
+            camera: &camera,
+        })
+        .collect();
+    let found = Flown::compare(&planned, &taken, surface, &Progress::default()).unwrap();
+    let photos = found.residuals.iter().map(|own| own.map(|own| own.photo));
+    photos.collect()
+}
+
+fn in_order(number: usize) -> String {
+    format!("DJI_{:04}.JPG", number + 1)
+}
+
+/// 2 m and 3 m apart rows to and fro; every photo is off by the same, more than half of that, and a little by itself. Also where
+/// names have no order, and where one photo was not taken. The same rows 300 m away are none of them.
+#[test]
+fn what_all_are_off_may_be_more_than_half_a_spacing() {
+    let surface = surface(|_| 5.0);
+    let mut planned = Vec::new();
+    for row in 0..5 {
+        for at in 0..10 {
+            let at = if row % 2 == 0 { at } else { 9 - at };
+            planned.push(at_corner(
+                50.0 + 2.0 * f64::from(at),
+                50.0 + 3.0 * f64::from(row),
+                35.0,
+            ));
+        }
+    }
+    let flown = |off: DVec3| -> Vec<DVec3> {
+        let places = planned.iter().enumerate();
+        let own = |number| DVec3::from_array([0, 1, 2].map(|axis| 0.2 * noise(number, axis)));
+        places
+            .map(|(number, place)| *place + off + own(number))
+            .collect()
+    };
+    let disorder = |number: usize| format!("{}.JPG", number * 13 % 50);
+    let all: Vec<Option<usize>> = (0..50).map(Some).collect();
+    for off in [
+        (1.5, 0.0, 0.0),
+        (1.2, 0.6, 0.5),
+        (0.0, 2.0, 0.0),
+        (-1.5, 1.8, 48.3),
+    ] {
+        let places = flown(off.into());
+        assert_eq!(found(&surface, &planned, &places, in_order), all, "{off:?}");
+        assert_eq!(found(&surface, &planned, &places, disorder), all, "{off:?}");
+        let mut fewer = places;
+        fewer.remove(17);
+        let wanted: Vec<Option<usize>> = (0..17)
+            .map(Some)
+            .chain([None])
+            .chain((17..49).map(Some))
+            .collect();
+        assert_eq!(
+            found(&surface, &planned, &fewer, in_order),
+            wanted,
+            "{off:?}"
+        );
+    }
+    let elsewhere = flown(DVec3::new(300.0, 0.0, 0.0));
+    assert_eq!(
+        found(&surface, &planned, &elsewhere, in_order),
+        vec![None; 50]
+    );
+}
+
+/// A mission that flies over the same places at two heights, of which all, one or one and a part were flown: each photo is of its own
+/// height, whichever is first in the mission.
+#[test]
+fn a_height_is_not_taken_for_another() {
+    let surface = surface(|_| 5.0);
+    let at_height = |z: f64| -> Vec<DVec3> {
+        let places = (0..24_u32).map(|n| {
+            at_corner(
+                30.0 + 12.0 * f64::from(n % 6),
+                30.0 + 10.0 * f64::from(n / 6),
+                z,
+            )
+        });
+        places.collect()
+    };
+    let (low, high) = (at_height(27.0), at_height(47.0));
+    for [first, second] in [[&low, &high], [&high, &low]] {
+        let planned = [&first[..], second].concat();
+        for taken in [0..24, 24..48, 0..48, 18..48, 0..30] {
+            let flown: Vec<DVec3> = (taken.clone())
+                .map(|number| {
+                    planned[number]
+                        + DVec3::from_array([0, 1, 2].map(|axis| 0.7 * noise(number, axis)))
+                })
+                .collect();
+            let wanted: Vec<Option<usize>> = (0..48)
+                .map(|number| taken.contains(&number).then(|| number - taken.start))
+                .collect();
+            assert_eq!(
+                found(&surface, &planned, &flown, in_order),
+                wanted,
+                "{taken:?}"
+            );
+        }
+    }
+}
