@@ -273,3 +273,15 @@ fn a_height_is_not_taken_for_another() {
         }
     }
 }
+
+/// Of more stops at one place than are looked at for each photo every one has its own.
+#[test]
+fn many_stops_at_one_place_have_a_photo_each() {
+    let surface = surface(|_| 5.0);
+    let planned = vec![at_corner(60.0, 60.0, 25.0); 20];
+    let mut found = found(&surface, &planned, &planned, |number| {
+        format!("{}.JPG", number * 7 % 20)
+    });
+    found.sort_unstable();
+    assert_eq!(found, (0..20).map(Some).collect::<Vec<_>>());
+}
