@@ -7,6 +7,7 @@ use clap::Args;
 use super::Answer;
 use super::flight_arguments::{FlightArguments, MemoryArguments};
 use super::outputs::{OutputArguments, Outputs};
+use crate::exports::ScaleReport;
 use crate::fault::{Fault, one_line};
 use crate::files::CHECK_MARK;
 use crate::flight::{Doubt, Limits, Review};
@@ -14,6 +15,7 @@ use crate::formats::FileError;
 use crate::jobs::Progress;
 use crate::opening::{self, Colours, Opened};
 use crate::picture::Agreement;
+use crate::units::LengthUnit;
 
 #[derive(Debug, Args)]
 pub(super) struct CheckArguments {
@@ -25,8 +27,8 @@ pub(super) struct CheckArguments {
     pub(super) output: OutputArguments,
 }
 
-/// Opens the flight, which looks at coordinate systems, places, sizes and metadata, and compares the
-/// photos with the colours of the surface and with those beside them.
+/// Opens the flight, which looks at coordinate systems, places, sizes and metadata, compares the
+/// photos with the colours of the surface and with those beside them, and says which are not to be trusted, and why.
 pub(super) fn check(arguments: &CheckArguments, progress: &Progress) -> Result<Answer, String> {
     let mut outputs = arguments.outputs()?;
     let (flight, memory) = (&arguments.flight, &arguments.memory);
@@ -52,13 +54,7 @@ pub(super) fn check_of(
     progress: &Progress,
 ) -> Result<(Answer, Option<Review>), String> {
     outputs.read(&opened.read)?;
-    let mut looked = look_at(&arguments.flight, opened, progress)?;
-    let at = |fault: Fault| arguments.flight.wrong(fault);
-    if let Some(review) = &mut looked.review {
-        review.take_decisions(&opened.settings.decisions);
-        review.look(progress).map_err(at)?;
-        review.compute_fields(progress).map_err(at)?;
-    }
+    let looked = look_at(&arguments.flight, opened, progress)?;
     Ok((
         deliver(&outputs, looked.text, looked.warnings)?,
         looked.review,
@@ -94,6 +90,9 @@ fn look_at(
     let mut review = Review::of_scales(flight, looked_up, &limits, progress).map_err(at)?;
     let compared = opening::compare_pixels(&review, &opened.photo_files, progress).map_err(at)?;
     opening::take_compared(&mut review, &compared);
+    review.take_decisions(&opened.settings.decisions);
+    review.look(progress).map_err(at)?;
+    review.compute_fields(progress).map_err(at)?;
     let has_colours = !opened.flight.parts().surface.colors().is_empty();
     if !has_colours {
         text.push_str("the surface has no colours\n");
@@ -121,6 +120,15 @@ fn look_at(
             // Writing into a text does not fail.
             let _ = writeln!(text, "{name}  {}", said.join("; "));
         }
+    }
+    // Which photos not to trust, and why: as the other commands say it.
+    let report = ScaleReport::new(&review, LengthUnit::Centimetre);
+    let reasons = report.reasons();
+    if reasons.is_empty() {
+        text.push_str("nothing was found against a photo\n");
+    }
+    for noted in &reasons {
+        let _ = writeln!(text, "{}: {}", noted.whose, noted.notes);
     }
     Ok(Looked {
         text,

@@ -30,16 +30,12 @@ pub enum ColoursFound {
     /// Nobody has compared them yet.
     #[default]
     NotCompared,
-    /// They were compared, or cannot be: nothing speaks against the photo.
+    /// They cannot be: too few points with a colour are in sight, or no file is there.
+    CannotTell,
+    /// They were compared: nothing speaks against the photo.
     NothingAgainst,
     /// They, or the file that they were to be read from, speak against it.
     Against(Doubt),
-}
-
-impl From<Option<Doubt>> for ColoursFound {
-    fn from(doubt: Option<Doubt>) -> Self {
-        doubt.map_or(Self::NothingAgainst, Self::Against)
-    }
 }
 
 /// Whether a photo and those beside it see the surface where it is.
@@ -81,7 +77,10 @@ impl Evidence {
         let of_colours = match (&self.colours, &self.file) {
             (_, PhotoFileState::Unreadable(_)) => None,
             (ColoursFound::Against(doubt), _) => Some(doubt),
-            (ColoursFound::NotCompared | ColoursFound::NothingAgainst, _) => None,
+            (
+                ColoursFound::NotCompared | ColoursFound::CannotTell | ColoursFound::NothingAgainst,
+                _,
+            ) => None,
         };
         let of_together = match &self.together {
             TogetherFound::Against(doubt) => Some(doubt),

@@ -4,7 +4,7 @@
 use super::{Doubt, Flight, FlightParts};
 use crate::fault::first_names;
 use crate::geometry::Ray;
-use crate::units::LengthUnit;
+use crate::units::{LengthUnit, in_words};
 
 /// A photo is in another coordinate system rather than far away, if its distance to the surface is
 /// so many times the surface's extent: a lens that still resolves the rock does not see so little.
@@ -58,7 +58,7 @@ impl Flight {
 
 impl Placement {
     /// What it says against each photo of its flight.
-    pub fn doubts(&self, unit: LengthUnit) -> impl Iterator<Item = (usize, Doubt)> {
+    pub fn doubts(&self, unit: Option<LengthUnit>) -> impl Iterator<Item = (usize, Doubt)> {
         let extent = self.extent;
         let far = self.far.iter().map(move |&(photo, distance)| {
             let doubt = Doubt::FarFromSurface {
@@ -74,7 +74,8 @@ impl Placement {
 
     /// The same of the whole flight, one sentence each, with numbers.
     pub fn warnings(&self, flight: &Flight) -> Vec<String> {
-        let FlightParts { photos, unit, .. } = flight.parts();
+        let FlightParts { photos, .. } = flight.parts();
+        let unit = in_words(flight.parts().unit_known.then_some(flight.parts().unit));
         let name = |photo: &usize| photos.get(*photo).map_or("", |photo| photo.name.as_str());
         let mut warnings = Vec::new();
         let distances = self.far.iter().map(|(_, away)| *away);

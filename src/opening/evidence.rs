@@ -56,7 +56,7 @@ pub fn look_up(flight: &Flight, files: &[PhotoFile]) -> LookedUp {
     warnings.extend(doubt_sizes(flight, files, &mut evidence));
     let placement = flight.placement();
     warnings.extend(placement.warnings(flight));
-    let of_places = placement.doubts(parts.unit);
+    let of_places = placement.doubts(parts.unit_known.then_some(parts.unit));
     warnings.extend(of_files.iter().map(|(doubt, _)| doubt.to_string()));
     let of_files = each_photo(of_files);
     for (photo, doubt) in of_photos.into_iter().chain(of_places).chain(of_files) {

@@ -295,15 +295,19 @@ fn colours(review: &Review) -> HealthFinding {
         return of(item, Health::Unknown, "none", says.to_owned()).with(Remedy::AddSurface);
     }
     let evidence = &review.looked_up().evidence;
-    let is_compared = |colours: &ColoursFound| *colours != ColoursFound::NotCompared;
-    let compared = evidence.iter().filter(|e| is_compared(&e.colours)).count();
+    let count = |of: ColoursFound| evidence.iter().filter(|e| e.colours == of).count();
+    let compared = count(ColoursFound::NothingAgainst);
     let found = files_found(review);
-    if found == 0 || compared < found {
+    if found == 0 || compared + count(ColoursFound::CannotTell) < found {
         let says = format!(
             "The surface has colours; those of {} were compared with it so far.",
             share(compared, review)
         );
         return of(item, Health::Unknown, "not compared", says);
+    }
+    if compared == 0 {
+        let says = "The surface has colours, and too few of them are in the photos' sight to compare them.";
+        return of(item, Health::Unknown, "unclear", says.to_owned());
     }
     let says = format!(
         "Nothing in the colours of {} speaks against the surface.",

@@ -3,6 +3,10 @@
 //!
 //! ```text
 //! open         the flight of a flight.toml, a package's folder, or loose files
+//! flight_poses the poses of a flight.toml, in whatever file they are
+//! photo_files  the image file of each photo
+//! photo_checks, photo_places  what files' sizes, metadata and places say against photos
+//! georeferencing  a model of its own frame brought to the world by positions, control points and lengths
 //! covariance   how sure poses and lenses of a reconstruction are
 //! areas        outlines and places, typed or in a file
 //! dropped      which of several files is what

@@ -79,6 +79,9 @@ fn a_right_surface_is_seen_where_it_is() {
         .lines()
         .filter(|line| line.contains("it sees the surface where it is, to 0."));
     assert_eq!(there.count(), 6, "{text}");
+    // And what speaks against photos otherwise, as the other commands say it.
+    let hole = "IMG_0009.jpg: check: over a hole in the cloud: top right";
+    assert!(text.contains(hole), "{text}");
     let scales = scales_json(folder.path(), &[]);
     assert!(!scales.to_string().contains("than it is"), "{scales}");
 }

@@ -508,8 +508,9 @@ fn a_photo_from_under_the_surface_is_not_trusted() {
         let top = crate::common::scale(photo, "top").expect("a scale");
         assert!((top / wrong_pile::BOTH_SCALES - 1.0).abs() < 1e-9, "{top}");
     }
-    let (_, err) = run(0, &["check", flight]);
+    let (out, err) = run(0, &["check", flight]);
     assert!(err.contains("taken from under the surface"), "{err}");
+    assert!(out.contains("check: taken from under the surface"), "{out}");
 
     let to = folder.path().join("all");
     let (_, err) = run(0, &["export", flight, "--to", text_of(&to)]);

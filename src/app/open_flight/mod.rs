@@ -411,8 +411,8 @@ impl OpenFlight {
 
     /// Takes what a photo's colours say.
     pub fn take_colours(&mut self, photo: usize, colours: &Colours) {
-        let found = ColoursFound::from(colours.doubt());
-        let speaks_against = found != ColoursFound::NothingAgainst;
+        let found = ColoursFound::from(colours);
+        let speaks_against = matches!(found, ColoursFound::Against(_));
         self.review.take_colours([(photo, found)]);
         match speaks_against {
             true => self.arrange(),

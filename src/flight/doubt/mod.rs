@@ -209,7 +209,7 @@ pub enum Doubt {
         /// The surface's extent, world units.
         extent: f64,
         /// Of both.
-        unit: LengthUnit,
+        unit: Option<LengthUnit>,
     },
     /// The camera stands under the surface.
     UnderSurface,

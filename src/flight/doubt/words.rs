@@ -242,10 +242,13 @@ impl fmt::Display for Doubt {
                 distance,
                 extent,
                 unit,
-            } => write!(
-                f,
-                "taken {distance:.0} {unit} from the surface, which is {extent:.0} {unit} wide: the poses and the surface are in two coordinate systems"
-            ),
+            } => {
+                let unit = in_words(*unit);
+                write!(
+                    f,
+                    "taken {distance:.0} {unit} from the surface, which is {extent:.0} {unit} wide: the poses and the surface are in two coordinate systems"
+                )
+            }
             Self::UnderSurface => f.write_str(
                 "taken from under the surface: check which axis is up, the heights' datum and the poses' convention",
             ),

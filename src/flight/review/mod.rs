@@ -8,10 +8,10 @@
 mod photo;
 mod sight;
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::fault::Fault;
-use crate::flight::decision::of_photo;
 use crate::flight::verdict::{Facts, Judged, judge};
 use crate::flight::{
     ColoursFound, Decision, Evidence, Flight, Limits, LookedUp, Outcome, PhotoFileState,
@@ -190,11 +190,15 @@ impl Review {
     /// Takes what the engineer has decided of photos; of one that the flight does not have nothing is
     /// taken. Decisions change no reason for doubt.
     pub fn take_decisions(&mut self, decisions: &[Decision]) {
+        // Of two about a photo the first counts, as in `of_photo`.
+        let decisions = decisions.iter().rev();
+        let by_name: HashMap<&str, &Decision> =
+            decisions.map(|of| (of.photo.as_str(), of)).collect();
         let photos = self.flight.parts().photos.iter();
-        self.decisions = match decisions.is_empty() {
+        self.decisions = match by_name.is_empty() {
             true => Vec::new(),
             false => photos
-                .map(|photo| of_photo(decisions, &photo.name).cloned())
+                .map(|photo| by_name.get(photo.name.as_str()).copied().cloned())
                 .collect(),
         };
     }

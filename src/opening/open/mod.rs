@@ -7,6 +7,7 @@
 //! surface   its file
 //! framing   poses and surface are brought to one world
 //! placing   control points bring both to another one
+//! image_points  how far the package's own image points are off its cameras and points
 //! lengths   in which unit, and whether its lengths are lengths
 //! building  the flight
 //! within    all of that again with more of a large cloud

@@ -195,15 +195,17 @@ fn read_reconstruction(
 ) -> Result<Reconstruction, FileError> {
     progress.stage(format!("reading {}", path.display()));
     source.inputs.push(path.to_owned());
-    let project = match (&source.topic, detect(path)?) {
-        (None, _) => read_project(path, progress)?,
-        (Some(topic), Kind::Reconstruction(Package::Ros, recording)) => {
-            ros::read_with_topic(&recording, topic, progress)?
-        }
-        (Some(topic), _) => {
-            let fault = flight_poses::topic_without_recording(topic);
-            return Err(FileError::new(path, fault));
-        }
+    let project = match &source.topic {
+        None => read_project(path, progress)?,
+        Some(topic) => match detect(path)? {
+            Kind::Reconstruction(Package::Ros, recording) => {
+                ros::read_with_topic(&recording, topic, progress)?
+            }
+            _ => {
+                let fault = flight_poses::topic_without_recording(topic);
+                return Err(FileError::new(path, fault));
+            }
+        },
     };
     if source.surface.is_none() {
         source.surface_is_packages = project.surface.is_some();

@@ -2,7 +2,7 @@
 
 use image::RgbImage;
 
-use crate::flight::{Doubt, Flight};
+use crate::flight::{ColoursFound, Doubt, Flight};
 use crate::picture::{Agreement, Mismatch};
 
 /// Whether a photo's colours are those of the surface.
@@ -14,6 +14,16 @@ pub enum Colours {
     Not(String),
     /// The photo's file is damaged or not readable, with the reason.
     Unreadable(String),
+}
+
+impl From<&Colours> for ColoursFound {
+    fn from(colours: &Colours) -> Self {
+        match (colours.doubt(), colours) {
+            (Some(doubt), _) => Self::Against(doubt),
+            (None, Colours::Compared(_)) => Self::NothingAgainst,
+            (None, Colours::Not(_) | Colours::Unreadable(_)) => Self::CannotTell,
+        }
+    }
 }
 
 impl Colours {

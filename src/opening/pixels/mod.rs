@@ -100,7 +100,7 @@ pub fn compare_all_pixels(
 /// Tells the review what was found.
 pub fn take_compared(review: &mut Review, compared: &ComparedPixels) {
     let colours = compared.colours.iter();
-    review.take_colours(colours.map(|(photo, colours)| (*photo, colours.doubt().into())));
+    review.take_colours(colours.map(|(photo, colours)| (*photo, colours.into())));
     let together = compared.together.iter();
     review.take_together(together.map(|(photo, together)| (*photo, together.into())));
 }
