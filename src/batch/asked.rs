@@ -52,7 +52,7 @@ pub enum OptionKind {
 }
 
 /// No pile has more pores.
-const MOST_SHARE: f64 = 0.9;
+pub const MOST_SHARE: f64 = 0.9;
 
 const fn one_of(key: &'static str, values: &'static [&'static str]) -> StepOption {
     StepOption {
@@ -150,6 +150,17 @@ impl Step {
     }
 }
 
+/// Something said of a step that does not fit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Misfit {
+    /// Of which step.
+    pub step: Step,
+    /// The key that is to be corrected.
+    pub key: &'static str,
+    /// What is wrong, beginning with a key.
+    pub what: String,
+}
+
 /// Whether the steps to the mass fit each other and what they are given: those of the option `steps`, `None` where it is not there.
 ///
 /// # Errors
@@ -158,19 +169,29 @@ pub fn steps_fit<'a>(
     steps: Option<impl Iterator<Item = &'a str>>,
     has_porosity: bool,
     has_tail: bool,
-) -> Result<(), String> {
+) -> Result<(), Misfit> {
     let Some(steps) = steps else {
         return Ok(());
     };
     let steps: Vec<&str> = steps.collect();
+    let misfit = |key, what: &str| {
+        Err(Misfit {
+            step: Step::Delineate,
+            key,
+            what: what.to_owned(),
+        })
+    };
     if steps.contains(&"none") && steps.len() > 1 {
-        return Err("--steps: none goes with no other step; leave it out".to_owned());
+        return misfit("steps", "steps: none goes with no other step; leave it out");
     }
     if has_porosity && !steps.contains(&"pores") {
-        return Err("--porosity is for the step pores, which --steps leaves out".to_owned());
+        return misfit(
+            "porosity",
+            "porosity is for the step pores, which the steps leave out",
+        );
     }
     if has_tail && !steps.contains(&"fines") {
-        return Err("--tail is of the fines, which --steps leaves out".to_owned());
+        return misfit("tail", "tail is of the fines, which the steps leave out");
     }
     Ok(())
 }
@@ -308,15 +329,28 @@ impl Asked {
                     .to_owned(),
             );
         }
+        self.check_options().map_err(|misfit| {
+            let Misfit { step, what, .. } = misfit;
+            format!("{}.{what}", step.as_str())
+        })?;
+        self.length_unit().map(|_| ())
+    }
+
+    /// Whether what is said of each step fits.
+    ///
+    /// # Errors
+    /// The first that does not.
+    pub fn check_options(&self) -> Result<(), Misfit> {
         for said in &self.steps {
-            if said.options.contains_key("masks") && said.options.contains_key("engine") {
-                return Err(
-                    "delineate.masks is in place of an engine: leave delineate.engine out"
-                        .to_owned(),
-                );
+            let has = |key: &str| said.options.contains_key(key);
+            if has("masks") && has("engine") {
+                return Err(Misfit {
+                    step: said.step,
+                    key: "engine",
+                    what: "masks is in place of an engine: leave engine out".to_owned(),
+                });
             }
             if said.step == Step::Delineate {
-                let has = |key: &str| said.options.contains_key(key);
                 let steps = said.options.get("steps");
                 steps_fit(
                     steps.map(|steps| steps.iter().map(String::as_str)),
@@ -334,14 +368,18 @@ impl Asked {
                 };
                 let mut values = said.options.get(option.key).into_iter().flatten();
                 if let Some(wrong) = values.find(|text| !is_share(text)) {
-                    let (step, key) = (said.step.as_str(), option.key);
-                    return Err(format!(
-                        "{step}.{key} is '{wrong}', no share from 0 to {MOST_SHARE}"
-                    ));
+                    return Err(Misfit {
+                        step: said.step,
+                        key: option.key,
+                        what: format!(
+                            "{} is '{wrong}', no share from 0 to {MOST_SHARE}",
+                            option.key
+                        ),
+                    });
                 }
             }
         }
-        self.length_unit().map(|_| ())
+        Ok(())
     }
 }
 

@@ -35,7 +35,7 @@ use fragscale_exports as exports;
 use fragscale_formats as formats;
 use fragscale_opening as opening;
 
-pub use asked::{Asked, AskedStep, OptionKind, Step, StepOption, steps_fit};
+pub use asked::{Asked, AskedStep, MOST_SHARE, Misfit, OptionKind, Step, StepOption, steps_fit};
 pub use record::{Record, remove_unfinished_below, remove_what_is_left};
 pub use results::{ResultsFolder, notes_on_results, write_results};
 pub use running::{BatchOptions, Ended, Event, FLIGHT_COMMAND, Outcome, run};

@@ -9,8 +9,7 @@
 //!
 //! [delineate]                              # optional: what can be said of a step, as on the command line
 //! engine = "classical"
-//!
-//! masks = "masks"                          # below the folder of each flight
+//! # masks = "masks"                        # in place of engine: below the folder of each flight
 //!
 //! [psd]
 //! reference = "sieves.csv"                 # of all flights
@@ -144,7 +143,6 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Season, Fault> {
         };
         for (key, value) in options {
             let wrong = |what: String| at(name, key, what, "correct or remove it");
-            // Which key is unknown is said where it is set.
             let option = step.options().iter().find(|option| option.key == key);
             let is = |kind: OptionKind| option.is_some_and(|option| option.kind == kind);
             // A share is written as a number, all else as text.
@@ -166,6 +164,16 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Season, Fault> {
             asked.set(step, key, values).map_err(wrong)?;
         }
     }
+    // Also of steps that are not asked for now.
+    asked.check_options().map_err(|misfit| {
+        let (table, what) = (misfit.step.as_str(), misfit.what);
+        at(
+            table,
+            misfit.key,
+            format!("{table}.{what}"),
+            "correct or remove it",
+        )
+    })?;
     asked.set_steps(&steps);
     let mut sources = Vec::new();
     for (number, flight) in read.flight.iter().enumerate() {

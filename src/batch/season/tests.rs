@@ -96,16 +96,23 @@ fn the_way_to_the_mass_is_that_of_the_command() {
     assert_eq!(options["steps"], ["edges", "pores", "fines"]);
     // What the command would refuse of every flight is refused at once.
     let fault = parsed(&text.replace(", \"pores\"", "")).unwrap_err();
-    assert!(
-        fault.what.contains("--porosity is for the step pores"),
+    let wanted = "delineate.porosity is for the step pores, which the steps leave out";
+    assert_eq!(
+        (fault.what.as_str(), fault.line),
+        (wanted, Some(6)),
         "{fault}"
     );
     assert_eq!(options["porosity"], ["0.3"]);
     assert_eq!(options["tail"], ["a/fines.csv"]);
     let law = parsed(&text.replace("fines.csv", "swebrec")).unwrap();
     assert_eq!(law.asked.steps[0].options["tail"], ["swebrec"]);
-    let fault = parsed(&text.replace("0.3", "30")).unwrap_err();
-    assert!(fault.what.contains("no share from 0 to 0.9"), "{fault}");
+    // Also where the step is not asked for now, with its line.
+    let text = text.replace("0.3", "30");
+    for text in [text.replace("[\"delineate\"]", "[\"scales\"]"), text] {
+        let fault = parsed(&text).unwrap_err();
+        assert!(fault.what.contains("no share from 0 to 0.9"), "{fault}");
+        assert_eq!(fault.line, Some(6), "{fault}");
+    }
 }
 
 /// A wrong value waits for nobody: also where its step is not asked for now.
@@ -379,4 +386,16 @@ fn folders_have_safe_names() {
     ] {
         assert_eq!(results_folder(name), folder);
     }
+}
+
+/// What the header of `file.rs` shows is a file.
+#[test]
+fn the_header_is_an_example() {
+    let source = include_str!("file.rs");
+    let lines = source.lines().map_while(|line| line.strip_prefix("//!"));
+    let block = lines.skip_while(|line| !line.contains("```toml")).skip(1);
+    let block = block.take_while(|line| !line.contains("```"));
+    let text: Vec<&str> = block.map(str::trim_start).collect();
+    let season = parsed(&text.join("\n")).unwrap();
+    assert_eq!(season.name, "North pit 2026");
 }

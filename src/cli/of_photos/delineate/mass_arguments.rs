@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::batch::steps_fit;
+use crate::batch::{MOST_SHARE, steps_fit};
 use crate::delineation::mass::{LOOSE, Step, WantedSteps};
 use crate::delineation::tail::Tail;
 use crate::exports::MeasuredPhoto;
@@ -60,8 +60,8 @@ impl StepName {
 
 fn share(text: &str) -> Result<f64, String> {
     let share: Option<f64> = text.parse().ok();
-    let share = share.filter(|share| (0.0..=0.9).contains(share));
-    share.ok_or_else(|| "a share from 0 to 0.9, 0.45 for loose rock".to_owned())
+    let share = share.filter(|share| (0.0..=MOST_SHARE).contains(share));
+    share.ok_or_else(|| format!("a share from 0 to {MOST_SHARE}, {LOOSE} for loose rock"))
 }
 
 impl MassArguments {
@@ -78,6 +78,7 @@ impl MassArguments {
             self.porosity.is_some(),
             self.tail.is_some(),
         )
+        .map_err(|misfit| format!("--{}", misfit.what))
     }
 
     /// The file that is read for the tail.
