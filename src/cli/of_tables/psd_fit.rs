@@ -75,7 +75,9 @@ pub(super) fn fit(arguments: &FitArguments, progress: &Progress) -> Result<Answe
     };
     let options_of = |curve: &LabelledDistribution| -> Result<FitOptions, Fault> {
         let points = curve.distribution.points();
-        let weights = weights.as_ref().map(|weights| weights.of(points));
+        let weights = weights
+            .as_ref()
+            .map(|weights| weights.of(points, set.unit, factor));
         Ok(FitOptions {
             weights: weights.transpose()?,
             // As the table's sizes: in micrometres where those are.

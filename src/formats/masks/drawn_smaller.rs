@@ -1,5 +1,6 @@
 //! Whether outlines without a size of their photo were drawn on a smaller copy of it: then they all lie in a corner of it that is a half,
-//! a third or a quarter as wide and as high, and fill that. Sizes would be a half of what they are.
+//! a third or a quarter as wide and as high, and fill that. Sizes would be a half of what they are. Or on the photo as viewers turn it by its EXIF
+//! mark: then they reach beyond one side of it, and not beyond both where it is turned.
 
 use super::OutlinedPhoto;
 use super::outline::{OutlinedImage, Piece};
@@ -36,6 +37,21 @@ pub(super) fn refuse(image: &OutlinedImage, photo: &OutlinedPhoto<'_>) -> Result
         }
     }
     let (width, height) = (f64::from(photo.width), f64::from(photo.height));
+    let [beyond_width, beyond_height] = [width, height].map(|side| FILLED[1] * side);
+    let is_beyond = right > beyond_width || bottom > beyond_height;
+    if is_beyond && right <= beyond_height && bottom <= beyond_width {
+        return Err(Fault::new(
+            format!(
+                "its outlines reach beyond the photo {}, {} x {}, and not beyond it turned by 90 degrees: they seem to be drawn on it as viewers \
+                 turn it",
+                photo.name, photo.width, photo.height
+            ),
+            format!(
+                "say so in the file (\"width\": {}, \"height\": {}), or draw them on the photo as its pixels are stored",
+                photo.height, photo.width
+            ),
+        ));
+    }
     let fills = |times: &f64| {
         let shares = [right * times / width, bottom * times / height];
         shares
@@ -94,6 +110,15 @@ mod tests {
         let fault = read(squares(200, 150, "")).unwrap_err();
         assert!(fault.what.contains("a copy of 1/2 of its size"), "{fault}");
         assert!(fault.what.contains("within 200 x 150 pixels"), "{fault}");
+        // On the photo as viewers turn it; a file that says so is turned back elsewhere.
+        let fault = read(squares(300, 400, "")).unwrap_err();
+        assert!(fault.what.contains("as viewers turn it"), "{fault}");
+        assert!(
+            fault.remedy.contains(r#""width": 300, "height": 400"#),
+            "{fault}"
+        );
+        // What reaches beyond both is only cut off there.
+        assert!(read(squares(440, 330, "")).is_ok());
         // A corner that is no half both ways, the whole photo, and a file that says that it is of the whole one.
         for bytes in [
             squares(200, 300, ""),

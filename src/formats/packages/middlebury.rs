@@ -7,7 +7,7 @@
 //! ```
 //!
 //! P = K [R t]: R and t are `camera_from_world` with camera axes x right, y down, z forward; "the image
-//! origin is top-left". Each photo has a camera of its own, photos of one K share it. There is no
+//! origin is top-left". Each photo has a camera of its own. There is no
 //! distortion and no image size: that is taken from the photos beside the file. Which point of the
 //! first pixel is the origin is not said; K is taken as it is.
 
