@@ -57,10 +57,10 @@
 //! | to add | begin at | which leads to |
 //! |---|---|---|
 //! | a camera model | `src/camera/distortion.rs` | the enum of lens models; the model itself is a file beside it |
-//! | a package | `src/formats/packages/mod.rs` | a row of `packages!`; the reader is a folder beside it; README's table has a line |
+//! | a package | `src/formats/packages/mod.rs` | a row of `packages!`; the reader is a folder or a file beside it; `formats/candidates/mod.rs` says what of a folder is its, `docs/flights.md` has a line |
 //! | a column of the photo table | `src/exports/photo_columns.rs` | one row for window, CSV, text and sheet; the contract names those of the CSV |
-//! | an undoable setting of the flight | `src/flight/mod.rs` | `FlightSettings`: undo goes by it; `file.rs`, `file_text.rs`, `known_keys.rs` beside it keep it, `app/panels/flight_settings/` shows it |
-//! | a reason for doubt | `src/flight/doubt/mod.rs` | a variant, its sentence, its word (`kind.rs`) and what shows it (`review/sight.rs`); found in `verdict.rs`, `placement.rs` beside it, `opening/photo_checks.rs` or `opening/evidence.rs` |
+//! | an undoable setting of the flight | `src/flight/mod.rs` | `FlightSettings`: undo goes by it; `flight/file/` keeps it, `app/panels/flight_settings/` shows it |
+//! | a reason for doubt | `src/flight/doubt/mod.rs` | a variant, its sentence, its word (`kind.rs`) and what shows it (`review/sight.rs`); found in `flight/verdict/`, `flight/placement.rs`, and in `opening/`: `evidence.rs`, `photo_checks.rs`, `photo_files.rs`, `photo_places.rs`, `open/image_points.rs`, `pixels/`; `opening/health.rs` says under which word of the strip it counts and what mends it |
 //! | a shader primitive | `src/render/primitives/mod.rs` | a file and a WGSL file of one name; `renderer/` calls it |
 //! | a subcommand with progress | `src/cli/mod.rs` | a variant; its work is a file beside it |
 //! | a JSON key of a photo | `src/exports/scales_json.rs` | a field and its value; the contract |
@@ -69,10 +69,13 @@
 //! | a drone | `src/plan/drones.rs` | one row: camera, gimbal, DJI's numbers, each with its source |
 //! | a ground station's missions | `src/formats/missions/mod.rs`, `src/exports/missions/format.rs` | what reads and what writes it, a file each beside them; `exports/missions/tests/round_trip.rs` holds that all say the same |
 //! | a reconstruction engine | `src/reconstruct/engine.rs` | the trait; the engine is a folder beside it, and leaves COLMAP's text files |
-//! | an engine that outlines fragments | `src/delineation/engine/mod.rs` | the trait; the engine is a folder beside it and a row of `engines.rs`, its score is learned by `delineation/training/train_score.py`; `src/cli/of_photos/delineate/mod.rs` offers it |
+//! | an engine that outlines fragments | `src/delineation/engine/mod.rs` | the trait; the engine is a folder beside it and a row of `delineation/engines.rs`, its score is learned by `delineation/training/train_score.py`; `src/cli/of_photos/delineate/mod.rs` offers it |
 //! | a step or option of a batch | `src/batch/asked.rs` | its words; `src/cli/batch/steps.rs` does it by the single command's function, `src/batch/season/file.rs` has its keys |
 //! | a format of outlines | `src/formats/masks/mod.rs`, `src/exports/masks/mod.rs` | what reads and what writes it, a file each beside them; `exports/masks/tests.rs` holds that all read back to the pixel; `src/cli/of_photos/delineate/written_outlines.rs` offers it |
 //! | a job with a panel | `src/app/tasks/mod.rs` | the job with its task and its ending is a file beside it, the panel one in `panels/`; `command/mod.rs` and `apply.rs` start it |
+//!
+//! "The contract" is the team's own paper on formats, conventions, mathematics and the command line, against which others test; it is kept
+//! beside the project (`../shared/contract.md`), and `docs/` says the same to users.
 //!
 //! # Conventions (everywhere)
 //!

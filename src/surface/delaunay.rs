@@ -1,4 +1,4 @@
-//! The 2.5-D Delaunay triangulation of points, by spade: what rays walk on (`walk.rs`), and the whole
+//! The 2.5-D Delaunay triangulation of points, by spade: what rays walk on, and the whole
 //! of small clouds.
 
 use glam::DVec3;

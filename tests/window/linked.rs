@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 
 use crate::desk::{Desk, flight};
 
-/// The windrow's level crest is 0.24 and 0.02 y high (see tests/windrow.rs).
+/// The windrow's level crest is 0.24 and 0.02 y high (tests/windrow).
 fn on_crest(x: f64, y: f64) -> DVec3 {
     DVec3::new(x, y, 0.24 + 0.02 * y)
 }

@@ -26,7 +26,7 @@ pub fn on_screen(desk: &Desk, view: &View, point: DVec3) -> Pos2 {
     place.min + vec2(pixel.x as f32, pixel.y as f32)
 }
 
-/// The windrow's surface (see tests/windrow.rs): its western flank rises 3 in 4 to a level crest.
+/// The windrow's surface (tests/windrow): its western flank rises 3 in 4 to a level crest.
 pub fn on_windrow(x: f64, y: f64) -> DVec3 {
     let profile = match x {
         x if x < -0.64 => 0.0,

@@ -252,11 +252,6 @@ impl Fragments {
         self.photos.values().any(PhotoOutlines::is_changed)
     }
 
-    /// Whether coarser, finer and growing know the regions of a photo.
-    pub fn has_regions(&self, photo: usize) -> bool {
-        self.regions.as_ref().is_some_and(|(of, _)| *of == photo)
-    }
-
     /// Half the width of the brush, pixels of the photo.
     pub fn brush_radius(&self) -> f64 {
         match self.brush {

@@ -7,7 +7,7 @@
 //!
 //! Drawing whole fragments anew gives none that is larger than those. Where the coarse end of a pile hardly fits into the photos, most of
 //! it is cut by their edges; how much is larger than what is whole follows from the area of the cut ones
-//! ([`Counted::size_at_most`](super::counted::Counted)), and upper ends are drawn with that. Where an upper end lies among them, there
+//! (`Counted::size_at_most`), and upper ends are drawn with that. Where an upper end lies among them, there
 //! is none.
 
 use fragscale_core::fault::Fault;
