@@ -15,9 +15,11 @@ use crate::tasks::Task;
 /// The height of a row of the doubtful ones.
 const ROW: f32 = 20.0;
 
-/// How much of the panel they take; beside the measures of a selected one less, so that what all come to stays in sight.
+/// How much of the panel they take; beside the measures of a selected one less, and in a low panel, so that what all come to stays in
+/// sight.
 const ROWS: f32 = 160.0;
 const FEW_ROWS: f32 = 66.0;
+const LOW: f32 = 480.0;
 
 /// Draws all of it.
 pub(super) fn found(
@@ -174,7 +176,11 @@ fn doubtful(of: &PhotoOutlines, selected: Option<u32>, ui: &mut Ui, commands: &m
     if doubtful.is_empty() {
         return;
     }
-    let height = if selected.is_some() { FEW_ROWS } else { ROWS };
+    let is_low = ui.clip_rect().height() < LOW;
+    let height = match selected.is_some() || is_low {
+        true => FEW_ROWS,
+        false => ROWS,
+    };
     let mut list = egui::ScrollArea::vertical()
         .id_salt("doubtful fragments")
         .max_height(height)
