@@ -1,11 +1,12 @@
 //! Which of the layouts a table has, told by the names of its columns.
 
 use super::DistributionColumns;
-use super::names::{PASSING_NAMES, RetainedName, Role, is_amount, role, sample_of, weight_of};
+use super::names::{RetainedName, Role, is_amount, role, sample_of, weight_of};
 use super::percentile_column::{PercentileColumn, PercentsOfSet};
 use super::retained::{is_pan, is_total};
 use super::size_text::SizeText;
 use super::size_unit::SizeUnit;
+use super::vocabulary::PASSING_NAMES;
 use crate::fault::Fault;
 use crate::fragmentation::Weighting;
 use crate::tables::table::{Table, key};

@@ -45,6 +45,7 @@ mod size_unit;
 mod tests;
 mod unit_above;
 mod units_beside;
+mod vocabulary;
 
 use std::path::Path;
 

@@ -1,6 +1,10 @@
 //! What the name of a column says that it holds.
 
 use super::size_unit::{SizeUnit, in_brackets, is_also_a_word, no_length};
+use super::vocabulary::{
+    EACH_NAMES, MASS_NAMES, PASSING_NAMES, PERCENT_NAMES, SIZE_NAMES, SIZE_WORDS, is_retained,
+    says_cumulative, says_mass, says_percent, says_retained, words,
+};
 use crate::fragmentation::Weighting;
 use crate::tables::table::key;
 use crate::units::LengthUnit;
@@ -70,186 +74,6 @@ impl RetainedName {
             (false, false, _) => Self::Unsaid,
         }
     }
-}
-
-/// What masses are called; here and below also in German, French, Spanish, Italian, Portuguese, Polish, Swedish, Turkish and Russian.
-const MASS_NAMES: &[&str] = &[
-    "mass",
-    "masses",
-    "weight",
-    "weights",
-    "wt",
-    "masse",
-    "gewicht",
-    "poids",
-    "masa",
-    "peso",
-    "massa",
-    "vikt",
-    "kütle",
-    "масса",
-];
-
-/// What percents are called.
-const PERCENT_NAMES: &[&str] = &[
-    "percent",
-    "pct",
-    "percentage",
-    "prozent",
-    "procent",
-    "yüzde",
-    "процент",
-];
-
-/// What says that each sieve's share is meant, not the sum down to it.
-const EACH_NAMES: &[&str] = &[
-    "each",
-    "individual",
-    "incremental",
-    "differential",
-    "partial",
-    "parcial",
-    "parziale",
-    "simples",
-];
-
-/// What is within the name of a size of sieves or fragments.
-const SIZE_NAMES: &[&str] = &[
-    "size",
-    "opening",
-    "aperture",
-    "diameter",
-    "siebweite",
-    "maschenweite",
-    "korngröße",
-    "korngrösse",
-    "korngroesse",
-    "ouverture",
-    "tamis",
-    "abertura",
-    "apertura",
-    "tamiz",
-    "tamaño",
-    "malla",
-    "durchmesser",
-    "diamètre",
-    "diámetro",
-    "diametro",
-    "diâmetro",
-    "setaccio",
-    "vaglio",
-    "peneira",
-    "tamanho",
-    "średnica",
-    "rozmiar",
-    "maskvidd",
-    "kornstorlek",
-    "açıklığı",
-    "çapı",
-    "размер",
-    "диаметр",
-];
-
-/// Words that are names of sieves and sizes by themselves, and parts of other words.
-const SIZE_WORDS: &[&str] = &[
-    "maglia",
-    "sito",
-    "oczko",
-    "sikt",
-    "elek",
-    "çap",
-    "сито",
-    "ячейка",
-];
-
-/// What is within the name of what passes.
-pub(super) const PASSING_NAMES: &[&str] = &[
-    "passing",
-    "passed",
-    "finer",
-    "undersize",
-    "durchgang",
-    "passant",
-    "pasante",
-    "passando",
-    "przechodz",
-    "przesiew",
-    "passerande",
-    "passerat",
-    "geçen",
-    "проход",
-    "прошло",
-    "просев",
-];
-
-/// What is within the name of what stays on sieves.
-const RETAINED_NAMES: &[&str] = &[
-    "retained",
-    "oversize",
-    "coarser",
-    "residue",
-    "rückstand",
-    "rückständ",
-    "rueckstand",
-    "rueckstaend",
-    "refus",
-    "retenid",
-    "retid",
-    "trattenut",
-    "pozostał",
-    "kvarstannat",
-    "kalan",
-    "остаток",
-];
-
-/// Whether a word says that percents or masses are cumulative.
-fn says_cumulative(word: &str) -> bool {
-    ["cum", "kum", "acum", "накоп"]
-        .iter()
-        .any(|start| word.starts_with(start))
-}
-
-/// Whether words speak of mass.
-fn says_mass(words: &[String]) -> bool {
-    let units = ["g", "kg", "t", "gram", "grams", "tonnes", "lb", "lbs"];
-    let is_mass = |word: &str| MASS_NAMES.contains(&word) || units.contains(&word);
-    words.iter().any(|word| is_mass(word))
-}
-
-/// Whether words speak of percents.
-fn says_percent(words: &[String]) -> bool {
-    words
-        .iter()
-        .any(|word| PERCENT_NAMES.contains(&word.as_str()))
-}
-
-/// The words of a name in small letters: "PercentPassing", "percent_passing" and "% passing" are the
-/// same; a quotation mark is inches.
-pub(super) fn words(name: &str) -> Vec<String> {
-    let mut words = vec![String::new()];
-    let mut after_small = false;
-    for c in name.chars() {
-        let sign = match c {
-            '%' => "percent",
-            '"' | '″' => "in",
-            _ => "",
-        };
-        if !sign.is_empty() {
-            words.extend([sign.to_owned(), String::new()]);
-        } else if c.is_alphanumeric() {
-            if c.is_uppercase() && after_small {
-                words.push(String::new());
-            }
-            if let Some(word) = words.last_mut() {
-                word.extend(c.to_lowercase());
-            }
-        } else {
-            words.push(String::new());
-        }
-        after_small = c.is_lowercase();
-    }
-    words.retain(|word| !word.is_empty());
-    words
 }
 
 /// Takes the unit that a name ends with off its words.
@@ -459,30 +283,6 @@ pub(super) fn names_percent(name: &str) -> bool {
     says_percent(&words(name))
 }
 
-/// Whether a word speaks of sizes.
-pub(super) fn says_size(word: &str) -> bool {
-    let word = word.to_lowercase();
-    let more = [
-        "größe",
-        "groesse",
-        "taille",
-        "dimensioni",
-        "dimensione",
-        "sieve",
-        "siebe",
-    ];
-    (SIZE_NAMES.iter().chain(&more)).any(|part| word.contains(part))
-        || SIZE_WORDS.contains(&word.as_str())
-}
-
-/// Whether a name says that something stays on sieves.
-pub(super) fn says_retained(name: &str) -> bool {
-    let words = words(name);
-    let joined = words.concat();
-    RETAINED_NAMES.iter().any(|part| joined.contains(part))
-        || words.iter().any(|word| word == "ret")
-}
-
 /// What the name of a set of percentiles says beside percents and passing.
 pub(super) fn without_passing(name: &str) -> String {
     let is_known = |word: &String| {
@@ -553,10 +353,7 @@ pub(super) fn role(name: &str) -> Role {
             return of_size_role(&without, Some(unit));
         }
     }
-    if of_size && unit.is_some() {
-        return of_size_role(&words, unit);
-    }
-    if within(RETAINED_NAMES) || any(&["ret"]) {
+    if is_retained(&words) {
         return Role::Retained(RetainedName::of(&words));
     }
     let single = [

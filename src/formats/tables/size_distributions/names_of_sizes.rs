@@ -1,8 +1,9 @@
 //! What is wrong with the names of the columns that hold sizes.
 
 use super::layout::Layout;
-use super::names::{size_trouble, unit_of_size, words};
+use super::names::{size_trouble, unit_of_size};
 use super::size_unit::{no_length, unknown_unit};
+use super::vocabulary::words;
 use crate::fault::Fault;
 use crate::tables::table::Table;
 use crate::text::fields::shown;

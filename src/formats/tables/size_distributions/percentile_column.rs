@@ -1,7 +1,8 @@
 //! Columns of sizes that a percent passes.
 
-use super::names::{says_retained, take_unit_of_size, without_passing, words};
+use super::names::{take_unit_of_size, without_passing};
 use super::size_unit::SizeUnit;
+use super::vocabulary::{says_retained, words};
 use crate::tables::table::split_number;
 
 /// A column of sizes that a percent passes: "D50", "P80 (mm)", "x50", "d(0.5)", "Dv10", "50 % passing (cm)".

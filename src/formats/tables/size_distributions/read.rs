@@ -11,7 +11,7 @@ use super::names::{
 };
 use super::names_of_sizes::{refuse_names_of_sizes, unknown};
 use super::raw::{OnSieves, RawCurve, RawPoint};
-use super::retained::{is_no_sieve, is_pan, is_result, is_total, is_washed};
+use super::retained::{is_no_sieve, is_pan, is_result, is_total, is_washed, names_pan};
 use super::size_text::{SizeText, fraction_of_inches, sieve_mm};
 use super::size_unit::SizeUnit;
 use super::unit_above::Above;
@@ -235,11 +235,7 @@ impl Reader<'_> {
         column: usize,
     ) -> Result<(), Fault> {
         let name = self.table.name(column);
-        if !is_no_sieve(size_cell(row, size))
-            || !is_pan(size_cell(row, size))
-            || role(&name) == Role::Passing
-            || column >= row.len()
-        {
+        if !names_pan(size_cell(row, size)) || role(&name) == Role::Passing || column >= row.len() {
             return Ok(());
         }
         match self.percent(row, column) {

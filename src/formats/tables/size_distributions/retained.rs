@@ -24,38 +24,42 @@ const LOST: f64 = 0.003;
 /// A sum that is off the total by more is of something else, a share.
 const MUCH_LOST: f64 = 0.05;
 
+/// What the pan is called under the sieves.
+const PANS: &[&str] = &[
+    "pan",
+    "receiver",
+    "bottom",
+    "tray", // German, French, Spanish
+    "boden",
+    "schale",
+    "fond",
+    "fondo",
+    "ciego", // Portuguese, Polish, Swedish, Turkish, Russian
+    "fundo",
+    "prato",
+    "dno",
+    "botten",
+    "tava",
+    "поддон",
+    "дно",
+];
+
+/// Whether a cell is the name of the pan.
+pub(super) fn names_pan(cell: &str) -> bool {
+    let small = cell.to_lowercase();
+    PANS.iter().any(|pan| small.starts_with(pan))
+}
+
 /// Whether a cell of sizes is the pan under the sieves, or what passed the finest of them.
 pub(super) fn is_pan(cell: &str) -> bool {
     let small = cell.to_lowercase();
-    let pans = [
-        "pan",
-        "receiver",
-        "bottom",
-        "tray",
-        "<",
-        "passing",
-        "finer", // German, French, Spanish
-        "boden",
-        "schale",
-        "fond",
-        "fondo",
-        "ciego", // Portuguese, Polish, Swedish, Turkish, Russian
-        "fundo",
-        "prato",
-        "dno",
-        "botten",
-        "tava",
-        "поддон",
-        "дно",
-    ];
-    pans.iter().any(|pan| small.starts_with(pan))
+    let passed = ["<", "passing", "finer"];
+    names_pan(cell) || passed.iter().any(|start| small.starts_with(start))
 }
 
 /// Whether a cell beside an empty one of sizes says that its line is the pan, what was washed out, or the sum of all.
 pub(super) fn is_no_sieve(cell: &str) -> bool {
-    let is_sign = cell.starts_with('<') || cell.to_lowercase().starts_with(['p', 'f']);
-    let is_word = cell.to_lowercase().starts_with("pan") || !is_sign;
-    (is_word && is_pan(cell)) || is_total(cell) || is_washed(cell)
+    names_pan(cell) || is_total(cell) || is_washed(cell)
 }
 
 /// Whether a cell of sizes is in front of the sum of all.

@@ -3,8 +3,8 @@
 //! It counts where the line says that it is the sizes' ("Units: cm", "all sizes in inches"). A unit that stands there otherwise is
 //! neither taken nor passed over: the user is asked.
 
-use super::names::says_size;
 use super::size_unit::{SizeUnit, is_also_a_word};
+use super::vocabulary::says_size;
 use crate::fault::Fault;
 use crate::text::fields::shown;
 
@@ -158,12 +158,9 @@ fn is_stated(words: &[String], at: usize) -> bool {
         "mesures",
         "misure",
     ];
-    let of_this = |place: usize| words.get(place).map(String::as_str);
+    let before = words.iter().take(at).rev().map(String::as_str);
     let (mut through_in, mut through_colon, mut says) = (false, false, false);
-    for place in (0..at).rev() {
-        let Some(word) = of_this(place).filter(|word| *word != BREAK) else {
-            break;
-        };
+    for word in before.take_while(|word| *word != BREAK) {
         if UNITS.contains(&word) {
             return true;
         }

@@ -458,6 +458,10 @@ fn something_in_the_pan_is_retained() {
         let points = set.curves[0].distribution.points();
         assert_eq!(points, [[4.0, 20.0], [8.0, 30.0], [16.0, 60.0]], "{name}");
     }
+    for pan in ["Fondo", "prato", "fond"] {
+        let (_, fault) = fault(&format!("Sieve (mm),Wt. %\n16,40\n8,30\n4,10\n{pan},20\n"));
+        assert!(fault.contains("has 20 in the pan"), "{pan}: {fault}");
+    }
     let (_, fault) = fault("Sieve (mm),Wt. %\n16,40\n8,30\n4,10\npan,20\n");
     assert!(fault.contains("has 20 in the pan"), "{fault}");
     // Nothing passes the pan.
