@@ -4,17 +4,16 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::AllMeasured;
-use super::outlined::{AllOutlined, Outlined};
-use crate::delineation::mass::WantedSteps;
+use super::outlined::{AllOutlined, Outlined, measured_each, sizes_of};
 use crate::delineation::measures::SieveShape;
 use crate::delineation::{OutlinedBy, photo};
-use crate::exports::{self, FragmentSizes, MassWay, MeasuredPhoto};
-use crate::fault::{Fault, by_cause};
+use crate::exports::{self, MeasuredPhoto};
+use crate::fault::Fault;
 use crate::flight::{Flight, FlightSettings, LookedUp};
 use crate::formats::{self, DistributionColumns};
 use crate::jobs::Progress;
 use crate::picture::edge_spread;
-use crate::size_distributions::{MadeOf, OfFragments, Page, Source};
+use crate::size_distributions::{MadeOf, OfFragments, Source};
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 use crate::units::LengthUnit;
@@ -73,13 +72,8 @@ impl State {
 
     /// Takes the curves of all photos over to the page of size distributions.
     pub(super) fn take_all_distributions(&mut self) {
-        match self.source_of_all() {
-            Ok(source) => {
-                self.take_distribution(source);
-                self.page = Page::SizeDistributions;
-            }
-            Err(fault) => self.say(Severity::Error, &fault.to_string()),
-        }
+        let source = self.source_of_all();
+        self.take_source(source);
     }
 
     fn source_of_all(&self) -> Result<Source, Fault> {
@@ -105,29 +99,18 @@ impl State {
 impl Measuring {
     fn measured(self, progress: &Progress) -> Result<AllMeasured, String> {
         let in_words = |fault: Fault| fault.to_string();
-        let outlined = &self.all.outlined;
-        let (mut measured, mut engines) = (Vec::new(), BTreeSet::new());
-        let mut said: Vec<(&str, String)> = Vec::new();
-        for (done, of) in outlined.iter().enumerate() {
-            progress.stage(format!("measuring the fragments of {}", of.name));
-            let count = outlined.len() as u64;
-            progress.advance(done as u64, count).map_err(in_words)?;
+        let mut engines = BTreeSet::new();
+        let (measured, said) = measured_each(&self.all.outlined, progress, |of| {
             let (photo, notes, engine) = self.photo(of, progress)?;
             engines.insert(match engine.is_empty() {
                 true => "saved".to_owned(),
                 false => engine,
             });
-            said.extend(notes.into_iter().map(|note| (of.name.as_str(), note)));
-            measured.push(photo);
-        }
-        let way = MassWay {
-            steps: WantedSteps::default(),
-            tail: None,
-        };
-        let sizes = FragmentSizes::of(&measured, &way, &self.flight, &self.looked_up, progress);
-        let sizes = sizes.map_err(in_words)?;
+            Ok((photo, notes))
+        })?;
+        let sizes = sizes_of(&measured, &self.flight, &self.looked_up, progress)?;
         let mut notes = self.all.warnings.clone();
-        notes.extend(by_cause(said, "photos"));
+        notes.extend(said);
         notes.extend(sizes.warnings());
         let engines: Vec<String> = engines.into_iter().collect();
         let engines = engines.join(" and ");

@@ -4,16 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::FragmentStep;
-use super::outlined::{AllOutlined, Outlined};
+use super::outlined::{AllOutlined, Outlined, measured_each, sizes_of};
 use crate::command::{Command, Destination};
 use crate::delineation::OutlinedBy;
-use crate::delineation::mass::WantedSteps;
 use crate::delineation::measures::SieveShape;
 use crate::exports::{
-    self, FRAGMENT_TABLES, FragmentSizes, FragmentTables, MapPlaces, MassWay, MeasuredPhoto,
-    PhotoOutlined,
+    self, FRAGMENT_TABLES, FragmentTables, MapPlaces, MeasuredPhoto, PhotoOutlined,
 };
-use crate::fault::{Fault, by_cause};
+use crate::fault::Fault;
 use crate::files::{self, FileError, Inputs, Kind};
 use crate::flight::{Flight, FlightSettings, LookedUp};
 use crate::formats::read_bytes;
@@ -128,23 +126,10 @@ impl Export {
         let mut warnings = self.warnings.clone();
         warnings.extend(places.fault().map(|fault| fault.to_string()));
         files::make_folder(&self.folder).map_err(|error| error.to_string())?;
-        let mut measured = Vec::new();
-        let mut said: Vec<(&str, String)> = Vec::new();
-        let count = self.outlined.len() as u64;
-        for (done, of) in self.outlined.iter().enumerate() {
-            progress.stage(format!("measuring the fragments of {}", of.name));
-            progress.advance(done as u64, count).map_err(in_words)?;
-            let (photo, notes) = self.photo(of, &places, units, progress)?;
-            said.extend(notes.into_iter().map(|note| (of.name.as_str(), note)));
-            measured.push(photo);
-        }
-        warnings.extend(by_cause(said, "photos"));
-        let way = MassWay {
-            steps: WantedSteps::default(),
-            tail: None,
-        };
-        let sizes = FragmentSizes::of(&measured, &way, &self.flight, &self.looked_up, progress);
-        let sizes = sizes.map_err(in_words)?;
+        let photo = |of| self.photo(of, &places, units, progress);
+        let (measured, said) = measured_each(&self.outlined, progress, photo)?;
+        warnings.extend(said);
+        let sizes = sizes_of(&measured, &self.flight, &self.looked_up, progress)?;
         warnings.extend(sizes.warnings());
         let of_tables = FragmentTables {
             flight: &parts.name,

@@ -105,7 +105,13 @@ impl State {
 
     /// Takes the size distribution of the selected photo over to its page.
     pub(super) fn take_fragments_distribution(&mut self) {
-        match self.fragments_source() {
+        let source = self.fragments_source();
+        self.take_source(source);
+    }
+
+    /// Takes curves over to their page, or says why there are none.
+    pub(super) fn take_source(&mut self, source: Result<Source, Fault>) {
+        match source {
             Ok(source) => {
                 self.take_distribution(source);
                 self.page = Page::SizeDistributions;
@@ -151,16 +157,18 @@ impl State {
         let (Some(made_of), Some(open)) = (&source.fragments, &self.open) else {
             return false;
         };
-        let now = open.fragments_made_of();
-        let is_other = match made_of.photo {
+        if made_of.flight != open.files.origin.file() {
+            return false;
+        }
+        match made_of.photo {
+            // Outlines that are not on the screen are as they were.
+            Some(photo) if open.fragments.of(photo).is_none() => false,
             Some(photo) => {
-                // Outlines that are not on the screen are as they were.
-                open.fragments.of(photo).is_some()
-                    && now.of_photo(photo, open.name(photo)) != made_of.made_of
+                let now = open.fragments_made_of();
+                now.of_photo(photo, open.name(photo)) != made_of.made_of
             }
-            None => now != made_of.made_of,
-        };
-        made_of.flight == open.files.origin.file() && is_other
+            None => open.fragments_made_of() != made_of.made_of,
+        }
     }
 }
 

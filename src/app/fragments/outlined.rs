@@ -1,14 +1,17 @@
 //! The photos that are outlined, on the screen or in files, as a job takes them along.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use image::RgbImage;
 
 use crate::camera::Camera;
+use crate::delineation::mass::WantedSteps;
 use crate::delineation::{Outliner, photo};
-use crate::exports;
-use crate::fault::Fault;
-use crate::flight::{FlightSettings, Photo};
+use crate::exports::{self, FragmentSizes, MassWay, MeasuredPhoto};
+use crate::fault::{Fault, by_cause};
+use crate::flight::{Flight, FlightSettings, LookedUp, Photo};
+use crate::jobs::Progress;
 use crate::labels::LabelImage;
 use crate::open_flight::OpenFlight;
 use crate::opening::{read_outlines, saved_outlines};
@@ -42,6 +45,40 @@ pub(super) struct AllOutlined {
     pub(super) of: usize,
     /// Which are left out, a sentence each.
     pub(super) warnings: Vec<String>,
+}
+
+/// Measures photo by photo; with what is to be said of their outlines.
+pub(super) fn measured_each<'a>(
+    outlined: &'a [Outlined],
+    progress: &Progress,
+    mut photo: impl FnMut(&'a Outlined) -> Result<(MeasuredPhoto<'a>, Vec<String>), String>,
+) -> Result<(Vec<MeasuredPhoto<'a>>, Vec<String>), String> {
+    let mut measured = Vec::new();
+    let mut said: Vec<(&str, String)> = Vec::new();
+    for (done, of) in outlined.iter().enumerate() {
+        progress.stage(format!("measuring the fragments of {}", of.name));
+        let advanced = progress.advance(done as u64, outlined.len() as u64);
+        advanced.map_err(|fault| fault.to_string())?;
+        let (photo, notes) = photo(of)?;
+        said.extend(notes.into_iter().map(|note| (of.name.as_str(), note)));
+        measured.push(photo);
+    }
+    Ok((measured, by_cause(said, "photos")))
+}
+
+/// What they come to, by the usual way to the mass.
+pub(super) fn sizes_of<'a>(
+    measured: &'a [MeasuredPhoto<'a>],
+    flight: &Arc<Flight>,
+    looked_up: &LookedUp,
+    progress: &Progress,
+) -> Result<FragmentSizes<'a>, String> {
+    let way = MassWay {
+        steps: WantedSteps::default(),
+        tail: None,
+    };
+    let sizes = FragmentSizes::of(measured, &way, flight, looked_up, progress);
+    sizes.map_err(|fault| fault.to_string())
 }
 
 impl Outlined {

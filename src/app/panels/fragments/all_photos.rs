@@ -90,7 +90,12 @@ pub(super) fn of_all_photos(
     };
     rows.push(("Photos", format!("{count} of {of}")));
     pairs("fragments of all photos", rows, ui);
-    for note in &all.notes {
+    say(&all.notes, ui);
+}
+
+/// What is to be said of fragments.
+pub(super) fn say(notes: &[String], ui: &mut Ui) {
+    for note in notes {
         let note = egui::RichText::new(note).color(ui.visuals().warn_fg_color);
         ui.add(egui::Label::new(note).wrap());
     }

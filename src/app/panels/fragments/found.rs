@@ -2,7 +2,7 @@
 
 use egui::{Role, Ui, WidgetInfo};
 
-use super::all_photos::size_rows;
+use super::all_photos::{say, size_rows};
 use crate::command::{Asking, Command};
 use crate::delineation::measures::Fragment;
 use crate::fragments::{FragmentStep, MeasuredFragments, PhotoOutlines};
@@ -229,10 +229,7 @@ fn all(
     ui.strong("This photo, by mass");
     ui.horizontal_wrapped(|ui| take_along(state, ui, commands));
     pairs("fragments by mass", rows, ui);
-    for note in &measured.notes {
-        let note = egui::RichText::new(note).color(ui.visuals().warn_fg_color);
-        ui.add(egui::Label::new(note).wrap());
-    }
+    say(&measured.notes, ui);
 }
 
 /// What outlined a photo first: the engine as it is chosen above, or as its file names it.
