@@ -239,6 +239,10 @@ impl Problem<'_> {
     }
 }
 
+pub(super) fn outer(v: DVec3) -> DMat3 {
+    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
+}
+
 /// What is not sure of a similarity that weighted pairs made (the module's header).
 struct SimilarityNoise {
     middle: DVec3,
@@ -257,7 +261,7 @@ impl SimilarityNoise {
         for (_, target, w) in pairs {
             let q = *target - middle;
             spread += w * q.length_squared();
-            outer_products += DMat3::from_cols(q * q.x, q * q.y, q * q.z) * *w;
+            outer_products += outer(q) * *w;
         }
         Self {
             middle,
@@ -277,7 +281,7 @@ impl SimilarityNoise {
         } else {
             b
         };
-        let along = DMat3::from_cols(q * q.x, q * q.y, q * q.z) * self.spread.recip();
+        let along = outer(q) * self.spread.recip();
         // [q]
         let across = DMat3::from_cols(q.cross(DVec3::X), q.cross(DVec3::Y), q.cross(DVec3::Z));
         let turned = across * self.turns * across.transpose();

@@ -21,7 +21,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::agreeing::{Weighted, agreeing, of_indices, on_a_line};
+use super::agreeing::{Weighted, agreeing, of_indices, on_a_line, outer};
 use super::student::t95;
 use crate::fault::Fault;
 use crate::geometry::{Similarity, median};
@@ -211,10 +211,6 @@ fn finish(pairs: &[Weighted], indices: &[usize], middle: DVec3) -> Result<Fit, F
         rotation_error,
     })
 }
-fn outer(v: DVec3) -> DMat3 {
-    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
-}
-
 /// The root of the summed squares of the distances from the longest axis, of points with that sum of
 /// outer products.
 fn beside_the_axis(sum: DMat3) -> f64 {

@@ -126,23 +126,29 @@ impl PhotosTogether {
             self.give_up(photo);
             return;
         };
-        self.kept.insert(photo, (small, field));
+        let own = Patches::of(&small, &field);
         for (pair, sight) in self.pairs.iter().zip(&mut self.sights) {
-            if pair.contains(&photo)
-                && let [Some(first), Some(second)] = pair.map(|of| self.kept.get(&of))
-            {
-                let [of_first, of_second] =
-                    [first, second].map(|(small, field)| Patches::of(small, field));
-                let in_second = seen_at(&of_first, &sighted(flight, pair[1], &second.0));
-                let in_first = seen_at(&of_second, &sighted(flight, pair[0], &first.0));
-                *sight = Some(PairSight::of(in_second, in_first));
+            let other = match *pair {
+                [first, second] if first == photo => second,
+                [first, second] if second == photo => first,
+                _ => continue,
+            };
+            if let Some((its_small, its_field)) = self.kept.get(&other) {
+                let its = Patches::of(its_small, its_field);
+                let in_other = seen_at(&own, &sighted(flight, other, its_small));
+                let in_own = seen_at(&its, &sighted(flight, photo, &small));
+                *sight = Some(PairSight::of(in_other, in_own));
             }
         }
+        self.kept.insert(photo, (small, field));
         self.forget_done();
     }
 
     /// Nothing comes of a photo: nobody waits for it any more.
     pub fn give_up(&mut self, photo: usize) {
+        if !self.wants(photo) {
+            return;
+        }
         let pairs = self.pairs.iter().copied().zip(self.sights.iter().copied());
         (self.pairs, self.sights) = pairs.filter(|(pair, _)| !pair.contains(&photo)).unzip();
         self.forget_done();
