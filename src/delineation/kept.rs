@@ -150,8 +150,10 @@ mod tests {
         }
         let mut nowhere = ball(2.0, 1.0, false);
         nowhere.world = None;
+        let mut beside_no_rock = ball(1.5, 0.4, true);
+        beside_no_rock.is_at_edge = false;
         let photo = PhotoFragments {
-            fragments: vec![ball(1.0, 0.3, false), odd, nowhere],
+            fragments: vec![ball(1.0, 0.3, false), odd, nowhere, beside_no_rock],
             frame: DVec2::new(4000.0, 3000.0),
             fines: 1.0 / 3.0,
             limit: 0.011,

@@ -9,6 +9,7 @@ use fragscale_core::surface::{Cloud, Surface};
 use fragscale_core::units::LengthUnit;
 
 use super::*;
+use crate::mass::PhotoFragments;
 
 const SIDE: u32 = 400;
 
@@ -137,6 +138,35 @@ fn a_line_does_not_stand_out() {
     }
 }
 
+/// The photo's edge, what was left out, both, and nothing: only the edge tells of the coarse end of a pile.
+#[test]
+fn what_cuts_a_fragment() {
+    let labels = drawn(|x, y| {
+        let is_in = |middle: [f64; 2]| (x - middle[0]).abs() < 20.0 && (y - middle[1]).abs() < 20.0;
+        match (x, y) {
+            _ if is_in([10.0, 100.0]) => 1,
+            _ if is_in([200.0, 100.0]) => 2,
+            _ if is_in([10.0, 300.0]) => 3,
+            _ if is_in([300.0, 200.0]) => 4,
+            // A bar below the second, and one below the third.
+            (180.0..220.0, 120.0..130.0) | (0.0..30.0, 320.0..330.0) => NOT_ROCK,
+            _ => FINES,
+        }
+    });
+    let found = measured(&labels, &field(0.0), SieveShape::Circle);
+    let cut: Vec<[bool; 2]> = found.iter().map(|of| [of.is_cut, of.is_at_edge]).collect();
+    assert_eq!(
+        cut,
+        [[true, true], [true, false], [true, true], [false, false]]
+    );
+}
+
+/// What people or another tool outlined.
+fn of_others(labels: &LabelImage, field: &ScaleField) -> PhotoFragments {
+    let (shape, unit) = (SieveShape::Circle, LengthUnit::Metre);
+    crate::photo::fragments(labels, field, shape, None, None, unit)
+}
+
 /// Of people and other tools nothing is claimed below the smallest outline of ten pixels' width, and below that width where there is
 /// none; a line of many pixels is none, either.
 #[test]
@@ -150,15 +180,7 @@ fn the_limit_of_others_is_as_wide_as_an_engines() {
                 + 2 * u32::from(is_in([200.0, 300.5], [55.0, 0.6]))
                 + 3 * u32::from(is_in([300.0, 100.0], [2.0, 2.0]))
         });
-        let field = field(0.0);
-        let photo = crate::photo::fragments(
-            &labels,
-            &field,
-            SieveShape::Circle,
-            None,
-            None,
-            LengthUnit::Metre,
-        );
+        let photo = of_others(&labels, &field(0.0));
         (photo.limit, photo.notes(&labels, false))
     };
     let (limit, notes) = said(30.0);
@@ -185,14 +207,7 @@ fn what_is_beside_the_surface_is_said() {
         let at = |middle: f64| (x - middle).abs() < 20.0 && (y - 200.0).abs() < 20.0;
         u32::from(at(100.0)) + 2 * u32::from(at(300.0))
     });
-    let photo = crate::photo::fragments(
-        &labels,
-        &field,
-        SieveShape::Circle,
-        None,
-        None,
-        LengthUnit::Metre,
-    );
+    let photo = of_others(&labels, &field);
     let notes = photo.notes(&labels, false);
     assert!(
         notes[0].starts_with("1 outline of which too little lies on the surface"),
