@@ -1,14 +1,26 @@
 //! Whether the photos stand where photos of this surface can stand. Poses and surface often come
 //! from two exports: in two coordinate systems, or upside down, they still give numbers.
 
-use super::{Doubt, Flight, FlightParts};
+use glam::{DVec2, DVec3};
+
+use super::{Doubt, Flight, FlightParts, Photo};
 use crate::fault::first_names;
 use crate::geometry::Ray;
+use crate::surface::Caster;
 use crate::units::{LengthUnit, in_words};
 
 /// A photo is in another coordinate system rather than far away, if its distance to the surface is
 /// so many times the surface's extent: a lens that still resolves the rock does not see so little.
 const FAR: f64 = 100.0;
+
+/// Along each side of a photo so many of its pixels are looked at, to see from which side it shows a mesh.
+const LOOKS: u32 = 5;
+
+/// Of fewer of them that meet the mesh nothing is said.
+const LEAST_LOOKS: usize = 5;
+
+/// So large a share of them meets it from behind where it is turned over; a mesh of faces that look either way has less.
+const FROM_BEHIND: f64 = 0.8;
 
 /// Which photos stand where none can, by their index in the flight.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -17,6 +29,8 @@ pub struct Placement {
     pub far: Vec<(usize, f64)>,
     /// Photos under the surface.
     pub under: Vec<usize>,
+    /// Other photos, which see the faces of a mesh from behind.
+    pub behind: Vec<usize>,
     /// The surface's extent, world units.
     pub extent: f64,
 }
@@ -31,28 +45,56 @@ impl Flight {
             ..Placement::default()
         };
         let centers = || parts.photos.iter().map(|photo| photo.pose.center);
-        let away = |center: glam::DVec3| (center - center.clamp(bounds.min, bounds.max)).length();
+        let away = |center: DVec3| (center - center.clamp(bounds.min, bounds.max)).length();
         let distances = centers().map(away).enumerate();
         placement.far = distances
             .filter(|(_, away)| *away > FAR * placement.extent)
             .collect();
-        if !placement.far.is_empty() {
-            return placement;
-        }
         // A surface that cannot be met says so when scales are asked of it.
-        let Ok(mut caster) = parts.surface.caster_for(parts.photos.len()) else {
+        let is_mesh = !parts.surface.is_cloud();
+        let rays = match is_mesh {
+            true => LOOKS as usize * LOOKS as usize + 2,
+            false => 2,
+        };
+        let Ok(mut caster) = parts.surface.caster_for(rays * parts.photos.len()) else {
             return placement;
         };
-        let mut hit = |origin, direction| caster.cast(&Ray { origin, direction });
-        placement.under = centers()
-            .enumerate()
-            .filter(|&(_, center)| {
-                // Under a quarry's overhang the surface is above and below.
-                hit(center, glam::DVec3::Z).is_some() && hit(center, glam::DVec3::NEG_Z).is_none()
-            })
-            .map(|(index, _)| index)
-            .collect();
+        let is_far: Vec<usize> = placement.far.iter().map(|(photo, _)| *photo).collect();
+        for (index, photo) in parts.photos.iter().enumerate() {
+            // One that strayed says nothing of the others.
+            if is_far.binary_search(&index).is_ok() {
+                continue;
+            }
+            let origin = photo.pose.center;
+            let mut meets = |direction| caster.cast(&Ray { origin, direction }).is_some();
+            // Under a quarry's overhang the surface is above and below.
+            if meets(DVec3::Z) && !meets(DVec3::NEG_Z) {
+                placement.under.push(index);
+            } else if is_mesh && self.sees_from_behind(photo, &mut caster) {
+                placement.behind.push(index);
+            }
+        }
         placement
+    }
+
+    /// Whether what a photo shows of a mesh shows its back.
+    fn sees_from_behind(&self, photo: &Photo, caster: &mut Caster<'_>) -> bool {
+        let (camera, image) = (self.camera(photo), self.parts().image);
+        let along =
+            |size: u32, place: u32| (f64::from(place) + 0.5) / f64::from(LOOKS) * f64::from(size);
+        let places = (0..LOOKS).flat_map(|row| (0..LOOKS).map(move |column| (column, row)));
+        let hits = places.filter_map(|(column, row)| {
+            let pixel = DVec2::new(along(camera.width, column), along(camera.height, row));
+            let direction = photo.pose.rotation * image.direction(camera, pixel).ok()?;
+            let origin = photo.pose.center;
+            caster.cast(&Ray { origin, direction })
+        });
+        let hits: Vec<bool> = hits.map(|hit| hit.is_from_behind).collect();
+        let behind = hits
+            .iter()
+            .filter(|is_from_behind| **is_from_behind)
+            .count();
+        hits.len() >= LEAST_LOOKS && behind as f64 > FROM_BEHIND * hits.len() as f64
     }
 }
 
@@ -69,7 +111,9 @@ impl Placement {
             (photo, doubt)
         });
         let under = self.under.iter();
+        let behind = self.behind.iter();
         far.chain(under.map(|&photo| (photo, Doubt::UnderSurface)))
+            .chain(behind.map(|&photo| (photo, Doubt::FromBehind)))
     }
 
     /// The same of the whole flight, one sentence each, with numbers.
@@ -88,14 +132,18 @@ impl Placement {
                 self.extent,
             ));
         }
-        if !self.under.is_empty() {
-            warnings.push(format!(
-                "{} of {} photos ({}) were {}",
-                self.under.len(),
-                photos.len(),
-                first_names(self.under.iter().map(name)),
-                Doubt::UnderSurface,
-            ));
+        for (of, doubt) in [
+            (&self.under, Doubt::UnderSurface),
+            (&self.behind, Doubt::FromBehind),
+        ] {
+            if !of.is_empty() {
+                warnings.push(format!(
+                    "{} of {} photos ({}) were {doubt}",
+                    of.len(),
+                    photos.len(),
+                    first_names(of.iter().map(name)),
+                ));
+            }
         }
         warnings
     }
@@ -170,6 +218,19 @@ mod tests {
         let said = warnings(&centers.map(DVec3::from));
         assert!(
             said[0].starts_with("1 of 2 photos (1.jpg) were taken from under"),
+            "{said:?}"
+        );
+    }
+
+    #[test]
+    fn one_that_strayed_hides_no_other() {
+        let said = warnings(&[DVec3::new(5e6, 5.0, 8.0), DVec3::new(5.0, 5.0, -8.0)]);
+        assert!(
+            said[0].starts_with("1 of 2 photos (0.jpg) were taken over"),
+            "{said:?}"
+        );
+        assert!(
+            said[1].starts_with("1 of 2 photos (1.jpg) were taken from under"),
             "{said:?}"
         );
     }

@@ -47,7 +47,14 @@ impl Definition {
     /// "n" or "n+m".
     fn of_epsg_text(text: &str) -> Result<Self, Fault> {
         let (horizontal, vertical) = match text.split_once('+') {
-            Some((horizontal, vertical)) => (horizontal, Some(vertical)),
+            // OPF names the authority twice.
+            Some((horizontal, vertical)) => {
+                let vertical = vertical.trim();
+                (
+                    horizontal,
+                    Some(vertical.strip_prefix("EPSG:").unwrap_or(vertical)),
+                )
+            }
             None => (text, None),
         };
         let number = |text: &str| {

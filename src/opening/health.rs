@@ -12,6 +12,8 @@ pub enum HealthItem {
     Unit,
     /// Of the world.
     CoordinateSystem,
+    /// The angles of the poses, and whether photos show points where the poses say. Only where something speaks against them.
+    Poses,
     /// Which way the surface is up.
     UpAxis,
     /// Of the surface, and whether those of the photos are the same.
@@ -34,6 +36,7 @@ impl HealthItem {
         match self {
             Self::Unit => "unit",
             Self::CoordinateSystem => "coordinates",
+            Self::Poses => "poses",
             Self::UpAxis => "up",
             Self::Colours => "colours",
             Self::Distance => "distance",
@@ -41,6 +44,53 @@ impl HealthItem {
             Self::Holes => "holes",
             Self::Points => "points",
             Self::Photos => "photos",
+        }
+    }
+
+    /// What a reason for doubt speaks against; `None` where it is of one photo's view, and the flight is well.
+    pub fn doubted_by(doubt: &Doubt) -> Option<Self> {
+        match doubt {
+            Doubt::UnitUnknown | Doubt::UnitNotSystems { .. } => Some(Self::Unit),
+            Doubt::FarFromSurface { .. } | Doubt::OtherHeights { .. } => {
+                Some(Self::CoordinateSystem)
+            }
+            Doubt::SmallAngles { .. } | Doubt::NoRotation { .. } | Doubt::OffItsPoints { .. } => {
+                Some(Self::Poses)
+            }
+            Doubt::UnderSurface | Doubt::FromBehind | Doubt::TurnedMesh => Some(Self::UpAxis),
+            Doubt::OtherColours { .. } | Doubt::Flipped { .. } => Some(Self::Colours),
+            Doubt::OtherDistance { .. } => Some(Self::Distance),
+            Doubt::StrangeCamera { .. }
+            | Doubt::SeveralDevices { .. }
+            | Doubt::OtherDevice { .. }
+            | Doubt::FocalLength { .. }
+            | Doubt::FlyingHeight { .. }
+            | Doubt::LaserRange { .. }
+            | Doubt::OtherPlace { .. }
+            | Doubt::OtherLength { .. } => Some(Self::Exif),
+            Doubt::OffSurface(_)
+            | Doubt::NoPoint(_)
+            | Doubt::LongTriangle { .. }
+            | Doubt::NoFit { .. } => Some(Self::Holes),
+            Doubt::NoisyPoints { .. } | Doubt::RoundedPoints { .. } | Doubt::Wall { .. } => {
+                Some(Self::Points)
+            }
+            Doubt::FileMissing { .. }
+            | Doubt::NoPhotoFolder { .. }
+            | Doubt::ReducedPhotos { .. }
+            | Doubt::FileUnreadable(_)
+            | Doubt::FileSize { .. }
+            | Doubt::SolvedOnOther { .. }
+            | Doubt::SmallerPhotos { .. }
+            | Doubt::SameFile { .. } => Some(Self::Photos),
+            Doubt::NoScale(_)
+            | Doubt::NoLine
+            | Doubt::Ratio { .. }
+            | Doubt::Sideways { .. }
+            | Doubt::FlatView { .. }
+            | Doubt::NotPlane { .. }
+            | Doubt::OffLine { .. }
+            | Doubt::WideInterval { .. } => None,
         }
     }
 }
@@ -95,7 +145,31 @@ impl Remedy {
             | Doubt::NoisyPoints { .. }
             | Doubt::Wall { .. }
             | Doubt::RoundedPoints { .. } => Some(Self::AddSurface),
-            _ => None,
+            Doubt::NoScale(_)
+            | Doubt::NoFit { .. }
+            | Doubt::NoLine
+            | Doubt::Ratio { .. }
+            | Doubt::Sideways { .. }
+            | Doubt::LongTriangle { .. }
+            | Doubt::FlatView { .. }
+            | Doubt::NotPlane { .. }
+            | Doubt::OffLine { .. }
+            | Doubt::WideInterval { .. }
+            | Doubt::SmallAngles { .. }
+            | Doubt::NoRotation { .. }
+            | Doubt::OffItsPoints { .. }
+            | Doubt::OtherPlace { .. }
+            | Doubt::OtherHeights { .. }
+            | Doubt::UnderSurface
+            | Doubt::FromBehind
+            | Doubt::TurnedMesh
+            | Doubt::StrangeCamera { .. }
+            | Doubt::SeveralDevices { .. }
+            | Doubt::OtherDevice { .. }
+            | Doubt::FocalLength { .. }
+            | Doubt::OtherColours { .. }
+            | Doubt::OtherDistance { .. }
+            | Doubt::Flipped { .. } => None,
         }
     }
 }
@@ -126,12 +200,13 @@ pub struct StatedOfFlight<'a> {
     pub doubtful_up: Option<UpAxis>,
 }
 
-/// How a flight is, in the order of [`HealthItem`]; of its points only where something speaks against them, of
+/// How a flight is, in the order of [`HealthItem`]; of its poses and points only where something speaks against them, of
 /// its distance where photos were compared.
 pub fn flight_health(review: &Review, stated: &StatedOfFlight<'_>) -> Vec<HealthFinding> {
     let found = [
         Some(unit(review, stated)),
         Some(coordinates(review, stated)),
+        poses(review),
         Some(up(review, stated)),
         Some(colours(review)),
         distance(review),
@@ -162,12 +237,36 @@ impl HealthFinding {
     }
 }
 
-/// In how many photos, and the first such reason as a sentence.
-fn doubted(review: &Review, is_meant: impl Fn(&Doubt) -> bool) -> (usize, String) {
-    let reason = |photo: PhotoReview<'_>| photo.doubts.iter().find(|d| is_meant(d)).cloned();
-    let mut reasons = review.photos().filter_map(reason).peekable();
-    let first = reasons.peek().map(ToString::to_string).unwrap_or_default();
-    (reasons.count(), first)
+/// What speaks against one thing.
+struct Doubted {
+    /// In how many photos.
+    count: usize,
+    /// The first such reason.
+    first: Doubt,
+}
+
+/// Whether reasons for doubt speak against this.
+fn doubted(review: &Review, item: HealthItem) -> Option<Doubted> {
+    let is_meant = |doubt: &&Doubt| HealthItem::doubted_by(doubt) == Some(item);
+    let reason = |photo: PhotoReview<'_>| photo.doubts.iter().find(is_meant).cloned();
+    let mut reasons = review.photos().filter_map(reason);
+    let first = reasons.next()?;
+    Some(Doubted {
+        count: 1 + reasons.count(),
+        first,
+    })
+}
+
+impl Doubted {
+    /// "3 of 7 photos".
+    fn share(&self, review: &Review) -> String {
+        share(self.count, review)
+    }
+
+    /// With the reason.
+    fn says(&self, review: &Review) -> String {
+        format!("{}: {}.", self.share(review), self.first)
+    }
 }
 
 /// "3 of 7 photos".
@@ -202,17 +301,12 @@ fn unit(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
 
 fn coordinates(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
     let item = HealthItem::CoordinateSystem;
-    let is_far = |doubt: &Doubt| matches!(doubt, Doubt::FarFromSurface { .. });
-    let (far, reason) = doubted(review, is_far);
-    if far > 0 {
-        let says = format!("{}: {reason}.", share(far, review));
-        return of(item, Health::Bad, "two systems", says).with(Remedy::AddSurface);
-    }
-    let is_of_heights = |doubt: &Doubt| matches!(doubt, Doubt::OtherHeights { .. });
-    let (apart, reason) = doubted(review, is_of_heights);
-    if apart > 0 {
-        let says = format!("{}: {reason}.", share(apart, review));
-        return of(item, Health::Bad, "two heights", says).with(Remedy::AddSurface);
+    if let Some(doubted) = doubted(review, item) {
+        let short = match doubted.first {
+            Doubt::OtherHeights { .. } => "two heights",
+            _ => "two systems",
+        };
+        return of(item, Health::Bad, short, doubted.says(review)).with(Remedy::AddSurface);
     }
     if let Some(crs) = stated.crs {
         // WKT is a page.
@@ -249,10 +343,8 @@ fn coordinates(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
 
 fn up(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
     let item = HealthItem::UpAxis;
-    let (under, reason) = doubted(review, |doubt| matches!(doubt, Doubt::UnderSurface));
-    if under > 0 {
-        let says = format!("{}: {reason}.", share(under, review));
-        return of(item, Health::Bad, "?", says);
+    if let Some(doubted) = doubted(review, item) {
+        return of(item, Health::Bad, "?", doubted.says(review));
     }
     match stated.doubtful_up {
         Some(axis) => {
@@ -285,10 +377,13 @@ fn up(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
 
 fn colours(review: &Review) -> HealthFinding {
     let item = HealthItem::Colours;
-    let (other, reason) = doubted(review, Doubt::is_of_colours);
-    if other > 0 {
-        let says = format!("{}: {reason}.", share(other, review));
-        return of(item, Health::Bad, share(other, review), says);
+    if let Some(doubted) = doubted(review, item) {
+        return of(
+            item,
+            Health::Bad,
+            doubted.share(review),
+            doubted.says(review),
+        );
     }
     if review.flight().parts().surface.colors().is_empty() {
         let says = "The surface has no colours: none say whether the photos show this pile.";
@@ -318,10 +413,9 @@ fn colours(review: &Review) -> HealthFinding {
 
 fn distance(review: &Review) -> Option<HealthFinding> {
     let item = HealthItem::Distance;
-    let (elsewhere, reason) = doubted(review, |d| matches!(d, Doubt::OtherDistance { .. }));
-    if elsewhere > 0 {
-        let says = format!("{}: {reason}.", share(elsewhere, review));
-        return Some(of(item, Health::Bad, share(elsewhere, review), says));
+    if let Some(doubted) = doubted(review, item) {
+        let share = doubted.share(review);
+        return Some(of(item, Health::Bad, share, doubted.says(review)));
     }
     let evidence = review.looked_up().evidence.iter();
     let of_compared = evidence.filter_map(|evidence| match &evidence.together {
@@ -349,28 +443,16 @@ fn distance(review: &Review) -> Option<HealthFinding> {
 
 fn exif(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
     let item = HealthItem::Exif;
-    let is_of_metadata = |doubt: &Doubt| {
-        matches!(
-            doubt,
-            Doubt::StrangeCamera { .. }
-                | Doubt::SeveralDevices { .. }
-                | Doubt::OtherDevice { .. }
-                | Doubt::FocalLength { .. }
-                | Doubt::FlyingHeight { .. }
-                | Doubt::LaserRange { .. }
-                | Doubt::OtherPlace { .. }
-                | Doubt::OtherLength { .. }
-        )
-    };
-    let can_georeference = stated.reconstruction.is_some();
-    let (against, reason) = doubted(review, is_of_metadata);
-    if against > 0 {
-        let says = format!("{}: {reason}.", share(against, review));
-        let mut doubts = review.photos().flat_map(|photo| photo.doubts);
-        let first = doubts.find(|doubt| is_of_metadata(doubt));
+    if let Some(doubted) = doubted(review, item) {
+        let can_georeference = stated.reconstruction.is_some();
         return HealthFinding {
-            remedy: first.and_then(|doubt| Remedy::against(doubt, can_georeference)),
-            ..of(item, Health::Bad, share(against, review), says)
+            remedy: Remedy::against(&doubted.first, can_georeference),
+            ..of(
+                item,
+                Health::Bad,
+                doubted.share(review),
+                doubted.says(review),
+            )
         };
     }
     let metadata = review.looked_up().metadata;
@@ -393,23 +475,13 @@ fn exif(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
 
 fn holes(review: &Review) -> HealthFinding {
     let item = HealthItem::Holes;
-    let is_hole = |doubt: &Doubt| {
-        matches!(
-            doubt,
-            Doubt::OffSurface(_)
-                | Doubt::NoPoint(_)
-                | Doubt::LongTriangle { .. }
-                | Doubt::NoFit { .. }
-        )
-    };
-    let (over, reason) = doubted(review, is_hole);
-    if over > 0 {
+    if let Some(doubted) = doubted(review, item) {
         let says = format!(
-            "{} look over a hole or an edge of the surface; the first: {reason}.",
-            share(over, review)
+            "{} look over a hole or an edge of the surface; the first: {}.",
+            doubted.share(review),
+            doubted.first
         );
-        let short = share(over, review);
-        return of(item, Health::Bad, short, says).with(Remedy::AddSurface);
+        return of(item, Health::Bad, doubted.share(review), says).with(Remedy::AddSurface);
     }
     match review.is_looked_at() && review.count() > 0 {
         true => {
@@ -423,19 +495,22 @@ fn holes(review: &Review) -> HealthFinding {
     }
 }
 
-fn points(review: &Review) -> Option<HealthFinding> {
-    let is_of_points = |doubt: &Doubt| {
-        matches!(
-            doubt,
-            Doubt::NoisyPoints { .. } | Doubt::RoundedPoints { .. } | Doubt::Wall { .. }
-        )
-    };
-    let (over, reason) = doubted(review, is_of_points);
-    (over > 0).then(|| {
-        let says = format!("{}; the first: {reason}.", share(over, review));
-        let finding = of(HealthItem::Points, Health::Bad, share(over, review), says);
-        finding.with(Remedy::AddSurface)
+/// Where something speaks against them, with the first reason.
+fn only_where_doubted(review: &Review, item: HealthItem) -> Option<HealthFinding> {
+    doubted(review, item).map(|doubted| {
+        let share = doubted.share(review);
+        let says = format!("{share}; the first: {}.", doubted.first);
+        of(item, Health::Bad, share, says)
     })
+}
+
+fn poses(review: &Review) -> Option<HealthFinding> {
+    only_where_doubted(review, HealthItem::Poses)
+}
+
+fn points(review: &Review) -> Option<HealthFinding> {
+    let finding = only_where_doubted(review, HealthItem::Points);
+    finding.map(|finding| finding.with(Remedy::AddSurface))
 }
 
 fn files_found(review: &Review) -> usize {
@@ -445,23 +520,20 @@ fn files_found(review: &Review) -> usize {
 
 fn photos(review: &Review) -> HealthFinding {
     let (found, count) = (files_found(review), review.count());
-    let is_of_file = |doubt: &Doubt| {
-        matches!(
-            doubt,
-            Doubt::FileSize { .. }
-                | Doubt::SolvedOnOther { .. }
-                | Doubt::SmallerPhotos { .. }
-                | Doubt::SameFile { .. }
-        )
-    };
-    let (wrong, reason) = doubted(review, is_of_file);
     let short = format!("{found} of {count}");
     let (health, says) = match found == count && count > 0 {
-        true if wrong > 0 => (Health::Bad, format!("{}: {reason}.", share(wrong, review))),
-        true => (Health::Good, format!("All {count} photo files are there.")),
+        true => match doubted(review, HealthItem::Photos) {
+            Some(doubted) => (Health::Bad, doubted.says(review)),
+            None => (Health::Good, format!("All {count} photo files are there.")),
+        },
         false => (
             Health::Bad,
-            format!("The files of {} are there.", share(found, review)),
+            match doubted(review, HealthItem::Photos) {
+                Some(doubted) if matches!(doubted.first, Doubt::FileUnreadable(_)) => {
+                    doubted.says(review)
+                }
+                _ => format!("The files of {} are there.", share(found, review)),
+            },
         ),
     };
     let finding = of(HealthItem::Photos, health, short, says);

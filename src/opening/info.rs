@@ -40,7 +40,13 @@ pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
         Kind::Mission => mission_info(&read_mission(path)?),
         Kind::Reconstruction(Package::Ros, path) => recording_info(&ros::read(&path, progress)?),
         Kind::Reconstruction(..) => {
-            reconstruction_info(&read_project(path, progress)?.reconstruction)
+            let project = read_project(path, progress)?;
+            let mut info = reconstruction_info(&project.reconstruction);
+            // Its points may be none, and its cloud lie beside it.
+            if let Some(surface) = &project.surface {
+                info["surface"] = json!(surface.display().to_string());
+            }
+            info
         }
         Kind::Flight(_) => {
             let opened = open_flight(path, &OpenOptions::default(), progress)?;

@@ -113,9 +113,11 @@ impl Mesh {
         };
         let (index, t) = self.first(ray, meet)?;
         let corners = self.triangles[index].map(|i| self.points[i as usize]);
+        let [a, b, c] = corners;
         Some(Met {
             t,
             longest_edge: longest_edge(corners),
+            is_from_behind: (b - a).cross(c - a).dot(ray.direction) > 0.0,
         })
     }
 

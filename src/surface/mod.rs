@@ -201,6 +201,9 @@ pub struct Hit {
     /// the points means that the cloud has a hole there. On an edge or a vertex, that of one of the
     /// triangles there.
     pub longest_edge: f64,
+    /// Whether the triangle of a mesh was met from the side from which its corners go round clockwise: it looks away. Never of
+    /// a cloud.
+    pub is_from_behind: bool,
 }
 
 /// What a caster of either kind returns, in the local frame.
@@ -210,6 +213,8 @@ struct Met {
     t: f64,
     /// See [`Hit::longest_edge`].
     longest_edge: f64,
+    /// See [`Hit::is_from_behind`].
+    is_from_behind: bool,
 }
 
 /// The longest edge of a triangle.
@@ -585,6 +590,7 @@ impl<'a> Caster<'a> {
             t: met.t,
             point: ray.at(met.t),
             longest_edge: met.longest_edge,
+            is_from_behind: met.is_from_behind,
         })
     }
 }

@@ -4,7 +4,7 @@
 use super::Doubt;
 
 /// All words.
-const KINDS: [&str; 42] = [
+const KINDS: [&str; 44] = [
     "no-scale",
     "off-surface",
     "no-point",
@@ -38,6 +38,8 @@ const KINDS: [&str; 42] = [
     "smaller-photos",
     "far-from-surface",
     "under-surface",
+    "from-behind",
+    "turned-mesh",
     "strange-camera",
     "several-devices",
     "other-device",
@@ -98,6 +100,8 @@ impl Doubt {
             Self::SmallerPhotos { .. } => "smaller-photos",
             Self::FarFromSurface { .. } => "far-from-surface",
             Self::UnderSurface => "under-surface",
+            Self::FromBehind => "from-behind",
+            Self::TurnedMesh => "turned-mesh",
             Self::StrangeCamera { .. } => "strange-camera",
             Self::SeveralDevices { .. } => "several-devices",
             Self::OtherDevice { .. } => "other-device",

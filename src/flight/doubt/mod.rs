@@ -72,8 +72,8 @@ pub enum Doubt {
     },
     /// The interval of a scale that goes to Split-Desktop is wide.
     WideInterval {
-        /// Its width, percent of its middle.
-        percent: f64,
+        /// Its width, percent of its middle; `None` where it cannot be said, because rays of drawn errors leave the surface.
+        percent: Option<f64>,
         /// Percent.
         limit: f64,
     },
@@ -213,6 +213,10 @@ pub enum Doubt {
     },
     /// The camera stands under the surface.
     UnderSurface,
+    /// It sees the faces of a mesh from behind.
+    FromBehind,
+    /// The mesh was turned over because it looked away, and nothing else says that it is to be.
+    TurnedMesh,
     /// Its camera's intrinsics are none that a lens has.
     StrangeCamera {
         /// What the flight calls the camera.
@@ -306,9 +310,13 @@ impl Doubt {
     }
 
     /// Whether the photo does not stand where one of this surface can, or does not show it: its scale
-    /// is that of something else.
+    /// may be that of something else.
     pub fn is_of_the_pile(&self) -> bool {
-        matches!(self, Self::FarFromSurface { .. } | Self::UnderSurface) || self.is_of_pixels()
+        let is_of_its_place = matches!(
+            self,
+            Self::FarFromSurface { .. } | Self::UnderSurface | Self::FromBehind | Self::TurnedMesh
+        );
+        is_of_its_place || self.is_of_pixels()
     }
 
     /// Whether the photo's colours say it.

@@ -108,7 +108,13 @@ impl fmt::Display for Doubt {
                     "the scale of the photo's pixels is {percent} % (rms) off the best line, more than {limit} %"
                 )
             }
-            Self::WideInterval { percent, limit } => {
+            Self::WideInterval { percent: None, .. } => f.write_str(
+                "how sure its scale is cannot be said: with the errors that are stated, rays of its corners leave the surface",
+            ),
+            Self::WideInterval {
+                percent: Some(percent),
+                limit,
+            } => {
                 let (percent, limit) = apart(*percent, *limit, 1);
                 write!(
                     f,
@@ -251,6 +257,14 @@ impl fmt::Display for Doubt {
             }
             Self::UnderSurface => f.write_str(
                 "taken from under the surface: check which axis is up, the heights' datum and the poses' convention",
+            ),
+            Self::FromBehind => f.write_str(
+                "taken from behind the faces of the mesh: it is turned over, mirrored or inside out against the poses (scales are \
+                 right in the last case only: turn its faces round to make sure)",
+            ),
+            Self::TurnedMesh => f.write_str(
+                "the mesh looked away from the photos and was turned by 180 degrees about x for that alone, as Meshroom turns meshes since \
+                 2023; one that is only inside out was right as it was, and its scale is wrong now: look at the photo over the mesh",
             ),
             Self::StrangeCamera { camera, why } => write!(f, "{camera}: {why}"),
             Self::SeveralDevices { camera, devices } => write!(

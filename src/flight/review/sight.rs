@@ -72,6 +72,8 @@ impl Doubt {
             Self::Sideways { .. } => (OnPhoto::Sides, InView::Footprint),
             Self::FlatView { .. } => (OnPhoto::TopBottom, InView::FromSide),
             Self::UnderSurface
+            | Self::FromBehind
+            | Self::TurnedMesh
             | Self::OtherDistance { .. }
             | Self::OtherHeights { .. }
             | Self::FlyingHeight { .. }

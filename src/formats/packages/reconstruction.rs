@@ -1,5 +1,6 @@
 //! What a structure-from-motion package made of a flight: cameras, posed photos, sparse points.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 
 use glam::DVec2;
@@ -154,8 +155,10 @@ pub struct Reconstruction {
     pub observations: Vec<Observation>,
     /// What is known of the image sizes.
     pub sizes: Sizes,
+    /// Whether some versions of the package turn meshes by 180 degrees about x as they write them, and not their poses.
+    pub may_turn_meshes: bool,
     /// Sizes of photos in pixels as the package names them beside its cameras, by the photo's name.
-    pub named_sizes: Vec<(String, (u32, u32))>,
+    pub named_sizes: HashMap<String, (u32, u32)>,
     /// From where the observations count.
     pub observed_from: Origin,
     /// The median reprojection error in the frame that the package solved in, where the reader had
@@ -232,12 +235,9 @@ impl Reconstruction {
 
     /// The size in pixels that the package names for each photo, beside its camera's.
     pub fn named_size(&self, photo: &PosedPhoto) -> Option<(u32, u32)> {
-        let named = self
-            .named_sizes
-            .iter()
-            .find(|(name, _)| *name == photo.name);
+        let named = self.named_sizes.get(&photo.name);
         let of_camera = || size_in_camera_name(&self.cameras.get(photo.camera)?.name);
-        named.map(|(_, size)| *size).or_else(of_camera)
+        named.copied().or_else(of_camera)
     }
 
     /// The median distance, in pixels, between the measured image points and the projections of

@@ -64,7 +64,19 @@ pub(super) fn bring_to_world(
     };
     let world = known.world().map_err(|error| at_poses(error.into()))?;
     let of_poses = source.poses_frame.to(&world);
-    let (mut cloud, of_points) = match (file, &surface) {
+    // What is taken to be in a system has its heights in the unit that they have there.
+    let is_taken =
+        surface.as_ref().is_some_and(WorldFrame::is_as_it_is) && !source.poses_frame.is_as_it_is();
+    // A file that states the poses' map and no heights has them as the poses do, whatever unit that is.
+    let has_poses_heights = surface.as_ref().is_some_and(|surface| {
+        !surface.states_heights() && source.poses_frame.is_same_map_with_heights(surface)
+    });
+    let points_frame = match (is_taken, has_poses_heights) {
+        (true, _) => Some(world.clone()),
+        (false, true) => Some(source.poses_frame.clone()),
+        (false, false) => surface.clone(),
+    };
+    let (mut cloud, of_points) = match (file, &points_frame) {
         (Some(file), Some(frame)) => (file, frame.to(&world)),
         _ => (std::mem::take(&mut source.reconstruction_cloud), of_poses),
     };
@@ -90,21 +102,19 @@ pub(super) fn bring_to_world(
     if !of_points.is_none() {
         cloud.facts = None;
     }
-    if let (Some(moving), Some(frame)) = (&mut source.moving, &surface) {
+    if let (Some(moving), Some(frame)) = (&mut source.moving, &points_frame) {
         moving.frames = Some((frame.clone(), world.clone()));
     }
     let poses_moved = of_poses.in_words("the poses");
     let points_moved = of_points.in_words("the points");
     source.warn(&path, poses_moved.as_slice());
-    let other_heights = surface.as_ref();
-    let other_heights = other_heights.and_then(|frame| source.poses_frame.other_heights(frame));
-    if let Some([poses, surface]) = other_heights {
+    if let Some([poses, surface]) = other_heights(source, surface.as_ref(), &world) {
         let doubt = Doubt::OtherHeights { poses, surface };
         source.warn(&path, &[doubt.to_string()]);
         source.doubts.push(doubt);
     }
     match surface {
-        Some(own @ WorldFrame::AsIs(_)) if !source.poses_frame.is_as_it_is() => {
+        Some(own) if is_taken => {
             let centers = source.photos.iter().map(|photo| photo.pose.center);
             let centers: Vec<DVec3> = centers.collect();
             let said = taken_to_be_in(&own, &world, &cloud.cloud.points, &centers);
@@ -115,8 +125,17 @@ pub(super) fn bring_to_world(
                 (said, _) => Some(said.map_err(at_surface)?),
             };
             source.warn(surface_file, said.as_slice());
+            source.warn(surface_file, points_moved.as_slice());
         }
-        Some(_) => source.warn(surface_file, points_moved.as_slice()),
+        Some(_) => {
+            if has_poses_heights {
+                let frame = source.poses_frame.in_words();
+                let said =
+                    format!("it says nothing of heights, which are taken to be those of {frame}");
+                source.warn(surface_file, &[said]);
+            }
+            source.warn(surface_file, points_moved.as_slice());
+        }
         None => {}
     }
     let poses_are_told = poses_moved.is_some() || !source.poses_frame.is_as_it_is();
@@ -126,6 +145,32 @@ pub(super) fn bring_to_world(
         poses_are_told,
         is_placed: false,
     })
+}
+
+/// What the poses' heights and the surface's count from, where one counts from the ellipsoid and the other does not. A file
+/// that states a map's system, or none, mostly says nothing of heights: then it is in the system that its package works in,
+/// or else in the world's, with its heights.
+fn other_heights(
+    source: &Source,
+    surface: Option<&WorldFrame>,
+    world: &WorldFrame,
+) -> Option<[String; 2]> {
+    let surface = surface?;
+    if surface.states_heights() {
+        return source.poses_frame.other_heights(surface);
+    }
+    // The package's own is in its own frame.
+    if source.surface_is_packages {
+        return None;
+    }
+    let preferred = source.preferred_crs.clone().map(WorldFrame::Named);
+    let preferred = preferred.filter(WorldFrame::states_heights);
+    let taken = preferred.as_ref().unwrap_or(world);
+    let [poses, surface] = source.poses_frame.other_heights(taken)?;
+    Some([
+        poses,
+        format!("{surface} (of {}; its file does not say)", taken.in_words()),
+    ])
 }
 
 /// How far the points of a cloud are rounded once they are moved: degrees become metres.

@@ -4,7 +4,7 @@
 //! source    what the flight is made of: what every step adds to
 //! reading   flight.toml, or the reconstruction
 //! cameras   the [[camera]] tables; the cameras meet their photo files
-//! surface   its file
+//! surface   its file; turned_mesh where Meshroom turned it
 //! framing   poses and surface are brought to one world
 //! placing   control points bring both to another one
 //! image_points  how far the package's own image points are off its cameras and points
@@ -22,6 +22,7 @@ mod placing;
 mod reading;
 mod source;
 mod surface;
+mod turned_mesh;
 mod within;
 
 use std::path::{Path, PathBuf};

@@ -248,6 +248,7 @@ fn take_reconstruction(
         named.filter(|size| *size != solved_on)
     });
     source.named_sizes = named.collect();
+    source.may_turn_meshes = reconstruction.may_turn_meshes;
     source.may_be_reduced = reconstruction.sizes == Sizes::PerhapsReduced;
     source.package_unit = reconstruction.unit;
     source.cameras = reconstruction.cameras;

@@ -43,6 +43,8 @@ pub(super) struct Source {
     pub(super) surface_note: Option<String>,
     /// The way of the package's frame to the world, where flight.toml says it.
     pub(super) package_surface_to_world: Option<Similarity>,
+    /// Whether its package may have turned the mesh (turned_mesh.rs).
+    pub(super) may_turn_meshes: bool,
     /// What is to be done with the points of a cloud that is read in part.
     pub(super) moving: Option<Moving>,
     pub(super) reconstruction_cloud: CloudFile,
@@ -92,6 +94,7 @@ impl Source {
             surface_is_packages: false,
             surface_note: None,
             package_surface_to_world: None,
+            may_turn_meshes: false,
             moving: None,
             reconstruction_cloud: CloudFile::default(),
             photo_folder: options.photos.clone(),

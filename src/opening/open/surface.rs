@@ -1,12 +1,13 @@
 //! The surface's file, with its z up.
 
 use super::source::Source;
+use super::turned_mesh::{lies_before_photos, turn_back};
 use super::{OnSample, OpenOptions, SurfaceSample};
 use crate::files::FileError;
 use crate::formats::{CloudFile, read_cloud, read_cloud_sample};
 use crate::in_part::{InPart, Moving};
 use crate::jobs::Progress;
-use crate::surface::{UpAxis, doubtful_up};
+use crate::surface::{Cloud, UpAxis, doubtful_up};
 
 /// Reads it; `None` where the reconstruction's own points are the surface.
 ///
@@ -26,6 +27,14 @@ pub(super) fn read(
     let settings = options.settings.as_ref().unwrap_or(&source.settings);
     let up = settings.surface_up;
     let Some(path) = source.surface.clone() else {
+        if up != UpAxis::Z {
+            let said = format!(
+                "the axis that is up ({}) was not taken: it is for a surface in a file of its own, and the reconstruction's points stand as its poses do",
+                up.name()
+            );
+            let file = source.file.clone();
+            source.warn(&file, &[said]);
+        }
         return Ok(None);
     };
     if let Some(on_sample) = on_sample
@@ -62,6 +71,10 @@ pub(super) fn read(
     }
     if up != UpAxis::Z {
         file.facts = None;
+    } else if let Some((said, doubt)) = turn_back(&mut file.cloud, source) {
+        file.facts = None;
+        file.warnings.push(said);
+        source.doubts.extend(doubt);
     }
     // The package's own cloud is in the frame of its poses, unless it says otherwise.
     if let Some(similarity) = &source.package_surface_to_world
@@ -77,7 +90,15 @@ pub(super) fn read(
             moving.package = Some(*similarity);
         }
     }
-    if let Some((axis, along_axis, along_z)) = doubtful_up(&file.cloud) {
+    // In a frame of its own nothing says which way is up, and a mesh that meets its photos is not to be turned.
+    let meets_photos = |mesh: &Cloud| {
+        source.reconstruction.is_some()
+            && source.poses_frame.is_as_it_is()
+            && lies_before_photos(mesh, source)
+    };
+    if let Some((axis, along_axis, along_z)) = doubtful_up(&file.cloud)
+        && !meets_photos(&file.cloud)
+    {
         let (along_axis, along_z) = (100.0 * along_axis, 100.0 * along_z);
         source.doubtful_up = Some(axis);
         let axis = axis.name();

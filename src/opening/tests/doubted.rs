@@ -101,6 +101,12 @@ fn angles_that_look_like_radians() {
             .iter()
             .filter(|said| said.contains("look like radians"));
         assert_eq!(said.count(), expected.len());
+        // So does the strip, which has nothing of poses that nothing speaks against.
+        let review = opened.review(&Limits::default(), &Progress::default());
+        let health = flight_health(&review.unwrap(), &StatedOfFlight::default());
+        let poses = health.iter().find(|found| found.item == HealthItem::Poses);
+        let short = poses.map(|found| found.short.as_str());
+        assert_eq!(short, (!expected.is_empty()).then_some("3 of 3 photos"));
     }
 }
 

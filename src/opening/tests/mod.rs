@@ -2,6 +2,7 @@
 
 mod doubted;
 mod drone_photos;
+mod meshes;
 mod metashape;
 mod odm;
 mod places;

@@ -199,6 +199,25 @@ impl WorldFrame {
         }
     }
 
+    /// Whether the other is the same map without a word of heights, and heights here count in another unit than x and y.
+    pub(crate) fn is_same_map_with_heights(&self, other: &Self) -> bool {
+        let map = |frame: &Self| {
+            frame
+                .crs()
+                .and_then(|name| name.split('+').next())
+                .map(str::to_owned)
+        };
+        self.heights_factor() != 1.0
+            && other.heights_factor() == 1.0
+            && matches!((self, other), (Self::Named(_), Self::Named(_)))
+            && map(self) == map(other)
+    }
+
+    /// Whether it says what its heights count from.
+    pub(crate) fn states_heights(&self) -> bool {
+        matches!(self, Self::Named(crs) if crs.states_heights())
+    }
+
     /// That heights here count from the ellipsoid and there from something else, or the other way round, in words for here and
     /// there; `None` where one of them does not say.
     pub(crate) fn other_heights(&self, there: &Self) -> Option<[String; 2]> {
@@ -209,7 +228,7 @@ impl WorldFrame {
     /// a local frame's origin counts from is not sure.
     pub(crate) fn heights_apart_from(&self, there: &Self) -> Option<[String; 2]> {
         let stated = |frame: &Self| match frame {
-            Self::Named(crs) if crs.states_heights() => Some(crs.heights().to_owned()),
+            Self::Named(crs) if frame.states_heights() => Some(crs.heights().to_owned()),
             _ => None,
         };
         let both = [stated(self)?, stated(there)?];
@@ -307,5 +326,27 @@ mod tests {
         ] {
             assert_eq!(apart(from, to), None, "{from} {to}");
         }
+    }
+
+    /// EPSG:2227 counts in US survey feet, EPSG:5703 in metres, EPSG:6360 in feet.
+    #[test]
+    fn a_map_without_a_word_of_heights_may_be_the_poses() {
+        for (poses, surface, expected) in [
+            ("EPSG:2227+5703", "EPSG:2227", true),
+            ("EPSG:2227+5703", "EPSG:2227+5703", false),
+            ("EPSG:2227+5703", "EPSG:2226", false),
+            ("EPSG:2227+6360", "EPSG:2227", false),
+            ("EPSG:2227", "EPSG:2227", false),
+        ] {
+            let found = named(poses).is_same_map_with_heights(&named(surface));
+            assert_eq!(found, expected, "{poses} {surface}");
+        }
+    }
+
+    /// As OPF writes it.
+    #[test]
+    fn the_authority_may_be_named_twice() {
+        let twice = Crs::understand("EPSG:32632+EPSG:5773").unwrap();
+        assert_eq!(twice.name(), "EPSG:32632+5773");
     }
 }

@@ -54,25 +54,38 @@ pub(crate) fn taken_to_be_in(
 
 #[cfg(test)]
 mod tests {
+    use crate::flight::Doubt;
     use crate::jobs::Progress;
     use crate::{OpenOptions, Opened, open_flight};
 
     /// A flight of one photo in UTM, over a cloud at this place that names no system.
     fn opened(east: f64, north: f64) -> Result<Opened, String> {
+        let photo = ("EPSG:32633", "500010,5000010,130");
+        opened_in("world.unit = \"m\"", photo, [east, north])
+    }
+
+    /// The same of another world, with the photo in that system, there.
+    fn opened_in(
+        world: &str,
+        (system, photo): (&str, &str),
+        [east, north]: [f64; 2],
+    ) -> Result<Opened, String> {
         let folder = tempfile::tempdir().unwrap();
         let write = |name: &str, text: &str| {
             std::fs::write(folder.path().join(name), text).unwrap();
         };
         write(
             "flight.toml",
-            "format = 1\nworld.unit = \"m\"\nsurface.file = \"pile.xyz\"\nphotos.poses = \"poses.csv\"\n\
-             [[camera]]\nwidth = 4\nheight = 3\nfx = 4\nfy = 4\ncx = 2\ncy = 1.5\n",
+            &format!(
+                "format = 1\n{world}\nsurface.file = \"pile.xyz\"\nphotos.poses = \"poses.csv\"\n\
+                 [[camera]]\nwidth = 4\nheight = 3\nfx = 4\nfy = 4\ncx = 2\ncy = 1.5\n"
+            ),
         );
         write(
             "poses.csv",
-            "photo,x,y,z,tilt,pan\na.jpg,500010,5000010,130,90,0\n",
+            &format!("photo,x,y,z,tilt,pan\na.jpg,{photo},90,0\n"),
         );
-        write("poses.prj", "EPSG:32633");
+        write("poses.prj", system);
         let corners = [(0.0, 0.0), (40.0, 0.0), (0.0, 40.0), (40.0, 40.0)];
         let pile = corners.map(|(x, y)| format!("{} {} 100\n", east + x, north + y));
         write("pile.xyz", &pile.concat());
@@ -101,6 +114,48 @@ mod tests {
             "its points are around (20, 20, 100), the photos around (500010, 5000010, 130), 5025 km away",
         ] {
             assert!(error.contains(part), "{error}");
+        }
+    }
+
+    /// EPSG:2227 counts in US survey feet of 1200/3937 m and EPSG:5703 in metres: a cloud that is taken to be in both has its
+    /// heights of 100 m at 328.0833 ft, as the photos have theirs.
+    #[test]
+    fn heights_of_another_unit_are_those_of_its_system() {
+        let photo = ("EPSG:2227+5703", "6000010,2000010,130");
+        let opened = opened_in("world.unit = \"us-ft\"", photo, [6e6, 2e6]).unwrap();
+        let parts = opened.flight.parts();
+        let (surface, photo) = (parts.surface.bounds(), parts.photos[0].pose.center);
+        let feet = 3937.0 / 1200.0;
+        for (found, metres) in [
+            (surface.min.z, 100.0),
+            (surface.max.z, 100.0),
+            (photo.z, 130.0),
+        ] {
+            assert!((found - metres * feet).abs() < 1e-9, "{found}");
+        }
+        let said = |what: &str| opened.warnings.iter().any(|warning| warning.contains(what));
+        assert!(said(
+            "pile.xyz: the heights of the points are in another unit"
+        ));
+        assert!(said("the heights of the poses are in another unit"));
+    }
+
+    /// Receivers' heights over a cloud that is taken to be in a system with heights over a geoid, and over one in a system
+    /// that says nothing of heights.
+    #[test]
+    fn heights_that_it_may_have_of_its_system_are_no_ellipsoids() {
+        let photo = ("EPSG:4979", "15.000127,45.15361,130");
+        for (system, is_doubted) in [("EPSG:32633+5773", true), ("EPSG:32633", false)] {
+            let world = format!("world.unit = \"m\"\nworld.crs = \"{system}\"");
+            let opened = opened_in(&world, photo, [500_000.0, 5_000_000.0]).unwrap();
+            let evidence = &opened.looked_up.evidence[0];
+            let found = evidence.doubts.iter().find_map(|doubt| match doubt {
+                Doubt::OtherHeights { surface, .. } => Some(surface.clone()),
+                _ => None,
+            });
+            assert_eq!(found.is_some(), is_doubted, "{:?}", opened.warnings);
+            let says = found.is_none_or(|found| found.ends_with("its file does not say)"));
+            assert!(says, "{:?}", opened.warnings);
         }
     }
 }

@@ -60,6 +60,7 @@ impl Walk<'_> {
             Some(Met {
                 t: t??,
                 longest_edge,
+                is_from_behind: false,
             })
         });
         met.min_by(first)

@@ -291,6 +291,7 @@ fn met(t: f64, there: &[Triangle]) -> Met {
     Met {
         t,
         longest_edge: sizes.min_by(f64::total_cmp).unwrap_or(0.0),
+        is_from_behind: false,
     }
 }
 

@@ -22,6 +22,8 @@
 //! - observationId is a viewId; x counts as the principal point does, from the top-left corner; many
 //!   files are saved without x, or without observations.
 //! - The frame is arbitrary unless the SfMTransform node turned and scaled it, which nothing tells.
+//! - Meshes beside it are turned by 180 degrees about x since version 2023 (`mesh/Mesh.cpp` writes x, -y, -z), and were not
+//!   before.
 //! - A photo is called by the last part of its path, or the whole path where two share that.
 //!
 //! `.abc` holds the same as Alembic, which is refused. OpenMVG's `sfm_data.json` is another format.
@@ -188,6 +190,7 @@ fn read(json: &[u8]) -> Result<Scene, Fault> {
     }
     let mut reconstruction = Reconstruction {
         package: "meshroom",
+        may_turn_meshes: true,
         measured_positions,
         cameras,
         photos,

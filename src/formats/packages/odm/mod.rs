@@ -209,7 +209,7 @@ fn with_tracks(dir: &Path, mut sparse: OpenSfm, warnings: &mut Vec<String>) -> R
 
 /// The sizes of the photos as they came, where `images.json` has them (`opendm/photo.py`). Where it is
 /// broken [`unaligned`] says so; nothing else depends on it.
-fn named_sizes(dir: &Path) -> Vec<(String, (u32, u32))> {
+fn named_sizes(dir: &Path) -> HashMap<String, (u32, u32)> {
     #[derive(Deserialize)]
     struct Image {
         filename: String,

@@ -15,7 +15,7 @@
 //! - From the world to the processing frame coordinates are scaled, x and y swapped where the world's
 //!   system is left-handed, and shifted. Here the shift and the scale are taken back, the swap is not:
 //!   east stands in x whatever order the system's definition has. Where the vertical unit is another
-//!   than the horizontal one, heights stay in the horizontal one, with a warning.
+//!   than the horizontal one, and the system does not say so, heights stay in the horizontal one, with a warning.
 //! - Pixels count from the top-left corner of the top-left pixel.
 //! - perspective: R1 R2 R3 T1 T2 are OpenCV's k1 k2 k3 p1 p2 (Pix4D's article 202559089). fisheye is
 //!   read where it is OpenCV's or near it (see `polynomial_fisheye`); others and spherical ones are
@@ -43,6 +43,7 @@ use crate::camera::{Brown, Camera, Distortion, Pose};
 use crate::cameras::polynomial_fisheye;
 use crate::fault::Fault;
 use crate::files::{FileError, read_bytes};
+use crate::geodesy::Crs;
 use crate::geodesy::Geographic;
 use crate::packages::reconstruction::{
     ImageUnit, MeasuredPosition, Origin, PosedPhoto, Project, Reconstruction, Sizes,
@@ -260,7 +261,8 @@ fn camera(
 /// The way from the processing frame to the world.
 struct World {
     shift: DVec3,
-    scale: f64,
+    /// Along each axis.
+    scale: DVec3,
 }
 
 impl World {
@@ -270,7 +272,7 @@ impl World {
                 .push("the project says no reference frame: coordinates are its own".to_owned());
             return Ok(Self {
                 shift: DVec3::ZERO,
-                scale: 1.0,
+                scale: DVec3::ONE,
             });
         };
         let transform = &frame.base_to_canonical;
@@ -279,7 +281,10 @@ impl World {
             let what = format!("the reference frame scales by {x}, {y}, {z}");
             return Err(Fault::new(what, "export the project in a metric system"));
         }
-        if z != x {
+        // A system that says what its heights count in has them in that; of another nobody would know.
+        let crs = Crs::understand(&frame.crs.definition);
+        let says_heights = crs.is_ok_and(|crs| crs.heights_factor() != 1.0);
+        if z != x && !says_heights {
             warnings.push(format!(
                 "heights are in the unit of the horizontal axes: the system's own are {} times \
                  theirs",
@@ -288,7 +293,7 @@ impl World {
         }
         Ok(Self {
             shift: DVec3::from_array(transform.shift),
-            scale: x,
+            scale: DVec3::new(x, x, if says_heights { z } else { x }),
         })
     }
 

@@ -130,6 +130,23 @@ fn frames_are_taken_back() {
         "{:?}",
         heights.warnings
     );
+    // A system in US survey feet with heights in metres has each axis in its own unit, and says so itself.
+    let own = project(|_, text| {
+        text.replace("EPSG:32616", "EPSG:2227+5703")
+            .replace("\"scale\": [1.0, 1.0, 1.0]", "\"scale\": [0.5, 0.5, 1.0]")
+    });
+    let (own, plain) = (own.unwrap(), with("EPSG:32616", "EPSG:32616"));
+    let [own_center, plain_center] = [&own, &plain].map(|found| found.photos[2].pose.center);
+    let expected = plain_center * DVec3::new(2.0, 2.0, 1.0);
+    assert!(
+        (own_center - expected).length() < 1e-8,
+        "{own_center} {expected}"
+    );
+    assert!(
+        !own.warnings.join("; ").contains("times"),
+        "{:?}",
+        own.warnings
+    );
     let none = with("opf-scene-reference-frame", "ext-x");
     assert_eq!(none.crs, None);
     assert!(none.warnings.join("; ").contains("no reference frame"));

@@ -138,6 +138,15 @@ pub(crate) fn read_csv(text: &str) -> Result<Reconstruction, Fault> {
             continue;
         }
         let fields = header.separator.split(text);
+        let beyond = fields.get(header.names.len()..).unwrap_or_default();
+        if beyond.iter().any(|field| !field.trim().is_empty()) {
+            let what = format!(
+                "{} values under {} names: are there decimal commas?",
+                fields.len(),
+                header.names.len()
+            );
+            return Err(Fault::at(line, what, EXPORT));
+        }
         let row = Row { line, fields };
         let photo = row.fields.get(name.0).map_or("", String::as_str);
         if photo.is_empty() {

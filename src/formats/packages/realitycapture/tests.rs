@@ -69,6 +69,15 @@ fn stated(yaw: f64, pitch: f64, roll: f64) -> [[f64; 3]; 3] {
 }
 
 #[test]
+fn more_values_than_names_are_refused() {
+    let wider = format!("{},7\n", CSV.trim_end());
+    let fault = read_csv(&wider).unwrap_err();
+    assert!(fault.what.contains("decimal commas"), "{fault}");
+    // A comma at the end is no value.
+    assert!(read_csv(&format!("{},\n", CSV.trim_end())).is_ok());
+}
+
+#[test]
 fn angles_turn_as_another_importer_states() {
     for [heading, pitch, roll] in [
         [0.0, 0.0, 0.0],
