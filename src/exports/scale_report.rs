@@ -166,16 +166,30 @@ impl<'a> ScaleReport<'a> {
 
     /// What no 95 % interval of a photo or more counts, because nobody states it; `None` where all is counted.
     pub fn not_counted(&self) -> Option<String> {
-        let lines = self
-            .lines()
-            .filter(|line| line.interval_percent().is_some());
-        let of_photos: Vec<Vec<ErrorSource>> = lines
-            .filter_map(|line| Some(line.uncertainty()?.not_counted(line.photo.pair).collect()))
-            .collect();
-        let missing = ErrorSource::ALL
-            .into_iter()
-            .filter(|source| of_photos.iter().any(|of| of.contains(source)));
-        let names: Vec<&str> = missing.map(ErrorSource::as_str).collect();
+        let counts = |line: &PhotoLine<'_>| {
+            let leaves = line.uncertainty().is_some_and(|sure| sure.leaves_surface);
+            line.interval_percent().is_some() || leaves
+        };
+        let lines = self.lines().filter(counts);
+        let mut names: Vec<&str> = Vec::new();
+        for line in lines {
+            let of_photo = line
+                .uncertainty()
+                .map(|sure| sure.not_counted_in_words(line.photo.pair));
+            for name in of_photo.unwrap_or_default() {
+                if !names.contains(&name) {
+                    names.push(name);
+                }
+            }
+        }
+        // In the order of the sources.
+        let order = |name: &&str| {
+            let sources = ErrorSource::ALL.iter();
+            sources
+                .map(|source| source.as_str())
+                .position(|source| source == *name)
+        };
+        names.sort_by_key(order);
         (!names.is_empty()).then(|| names.join(", "))
     }
 

@@ -11,8 +11,8 @@ use super::scale_report::{PhotoLine, ScaleReport};
 use crate::camera::Camera;
 use crate::flight::{Doubt, Verdict};
 use crate::scale::{
-    Corner, CornerName, CornerOutcome, ErrorSource, FittedScale, Interval, PhotoScale, ScalePair,
-    Uncertainty,
+    Corner, CornerName, CornerOutcome, ErrorSource, FittedScale, HalfAPose, Interval, PhotoScale,
+    ScalePair, Uncertainty,
 };
 
 #[derive(Serialize)]
@@ -149,6 +149,9 @@ struct Uncertain {
     fitted_bottom: Option<Ends>,
     parts_percent: BTreeMap<&'static str, Option<f64>>,
     not_counted: Vec<&'static str>,
+    /// Of a pose of which one half is stated: the other, "position" or "angle".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pose_lacks: Option<&'static str>,
 }
 
 impl Uncertain {
@@ -170,6 +173,7 @@ impl Uncertain {
                 .not_counted(pair)
                 .map(ErrorSource::as_str)
                 .collect(),
+            pose_lacks: uncertainty.half_a_pose.map(HalfAPose::lacks),
         }
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::photo_columns::PHOTO_COLUMNS;
 use super::scale_report::ScaleReport;
 use crate::flight::Doubt;
-use crate::scale::ImageKind;
+use crate::scale::{ImageKind, ScalePair};
 
 /// The report as aligned text: six significant digits, notes below.
 pub fn scales_table(report: &ScaleReport<'_>) -> String {
@@ -54,8 +54,13 @@ pub fn scales_table(report: &ScaleReport<'_>) -> String {
         text.push('\n');
     }
     if report.lines().any(|line| line.interval_percent().is_some()) {
-        text.push_str(
-            "\n95 % ±: how sure the line is that goes to Split-Desktop; off line: how far single pixels are from it\n",
+        let what = match report.lines().next().map(|line| line.photo.pair) {
+            Some(ScalePair::Corners) => "the corners' scales are that go",
+            Some(ScalePair::Fitted) | None => "the line is that goes",
+        };
+        let _ = writeln!(
+            text,
+            "\n95 % ±: how sure {what} to Split-Desktop (the farther end of the interval); off line: how far single pixels are from it"
         );
         if let Some(shared) = report.shared() {
             let _ = writeln!(text, "{shared}");
@@ -66,6 +71,11 @@ pub fn scales_table(report: &ScaleReport<'_>) -> String {
                 "not counted in it, because nobody states how sure it is: {not_counted} ([uncertainty] in flight.toml, or the settings in the window)"
             );
         }
+    } else if report.unit_known() && has_none(report) {
+        text.push_str(
+            "\nhow sure these scales are is not known: nobody states it, and the surface does not show it (a mesh whose faces are \
+             not joined, or few points)\n",
+        );
     }
     let below = report.reasons();
     if !below.is_empty() {
@@ -79,4 +89,13 @@ pub fn scales_table(report: &ScaleReport<'_>) -> String {
         let _ = write!(text, "\n{advice}\n");
     }
     text
+}
+
+/// Whether there are scales, and of none anything is known of how sure it is.
+fn has_none(report: &ScaleReport<'_>) -> bool {
+    let mut scales = report
+        .lines()
+        .filter(|line| line.pair().iter().any(Option::is_some))
+        .peekable();
+    scales.peek().is_some() && scales.all(|line| line.uncertainty().is_none())
 }

@@ -39,7 +39,7 @@ pub use sights::Sights;
 pub use sphere::Sphere;
 pub use stated_errors::{PoseErrors, ScalePair, StatedErrors};
 pub use uncertainty::{
-    Draws, ErrorSource, Interval, PixelErrors, PointNoise, UncertainPhoto, Uncertainty,
+    Draws, ErrorSource, HalfAPose, Interval, PixelErrors, PointNoise, UncertainPhoto, Uncertainty,
 };
 pub use view::ViewFacts;
 

@@ -30,6 +30,22 @@ impl PoseErrors {
             angle: self.angle.or(those.angle),
         }
     }
+
+    /// The variance that they leave in something, of what it gains by a radian about each of the camera's axes and by a
+    /// world unit along each of the world's; `None` where nobody states any.
+    pub(super) fn variance(self, by_radian: DVec3, by_position: DVec3) -> Option<f64> {
+        let of_angle = self.angle.map(|degrees| {
+            let radians = degrees.map(f64::to_radians);
+            (by_radian * radians).length_squared()
+        });
+        let of_position = self
+            .position
+            .map(|far| (by_position * far).length_squared());
+        match (of_angle, of_position) {
+            (None, None) => None,
+            (a, b) => Some(a.unwrap_or(0.0) + b.unwrap_or(0.0)),
+        }
+    }
 }
 
 /// Standard deviations of everything that a scale is computed from; `None` where nobody states it.
@@ -85,9 +101,12 @@ impl StatedErrors {
             .chain(self.focal.map(|value| ("focal", value)))
             .chain(self.surface.map(|value| ("surface", value)))
             .chain(self.world_scale.map(|value| ("world_scale", value)))
-            .find(|(_, value)| !(*value >= 0.0 && value.is_finite()))
+            .find(|(_, value)| !(0.0..=MOST).contains(value))
     }
 }
+
+/// No error is stated to be more, in whatever unit: such a number is none of an error.
+const MOST: f64 = 1e12;
 
 /// Which top and bottom scale go to Split-Desktop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

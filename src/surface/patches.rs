@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use super::left_out::{Kept, LeftOut, leave_out_each};
+use super::left_out::{Kept, LeftOut, leave_out_each, way_up};
 use super::made_once::MadeOnce;
 use super::mesh::Mesh;
 use super::tiles::Tiles;
@@ -23,6 +23,8 @@ pub struct Patch<'a> {
     blocks: &'a [TriangleBlock],
     max_edge: f64,
     left_out: &'a MadeOnce<Vec<Kept>>,
+    /// Which way points are left out along.
+    up: DVec3,
     /// Around the triangles, in the surface's local frame.
     pub bounds: Bounds,
 }
@@ -54,11 +56,11 @@ impl Patch<'_> {
     /// first call does it, on all cores. Of a mesh only those whose triangles stand near each other in its
     /// file.
     pub fn left_out<'a>(patches: &'a [Patch<'a>]) -> impl Iterator<Item = LeftOut> {
-        let make = |patch: &Patch<'_>| leave_out_each(patch.points, patch.triangles);
+        let make = |patch: &Patch<'_>| leave_out_each(patch.points, patch.triangles, patch.up);
         MadeOnce::make_all(patches, |patch| patch.left_out, make);
         patches.iter().flat_map(move |patch| {
             let kept = patch.left_out.get(|| make(patch)).iter();
-            kept.map(|kept| kept.of(patch.points))
+            kept.map(|kept| kept.of(patch.points, patch.up))
         })
     }
 
@@ -99,6 +101,7 @@ impl<'a> Patches<'a> {
                         blocks: &made.blocks,
                         max_edge,
                         left_out: &made.left_out,
+                        up: DVec3::Z,
                         bounds: made.bounds?,
                     })
                 })
@@ -114,6 +117,7 @@ impl<'a> Patches<'a> {
                         blocks: &run.blocks,
                         max_edge,
                         left_out: &run.left_out,
+                        up: run.up,
                         bounds: run.bounds,
                     })
                     .collect()
@@ -149,6 +153,7 @@ pub(super) struct Run {
     bounds: Bounds,
     blocks: Vec<TriangleBlock>,
     left_out: MadeOnce<Vec<Kept>>,
+    up: DVec3,
 }
 
 fn runs(mesh: &Mesh) -> Vec<Run> {
@@ -160,6 +165,7 @@ fn runs(mesh: &Mesh) -> Vec<Run> {
             bounds: Bounds::of(&corners)?,
             blocks: blocks_of(run, points),
             left_out: MadeOnce::default(),
+            up: way_up(points, run),
         })
     })
     .collect()

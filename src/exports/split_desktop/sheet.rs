@@ -8,7 +8,7 @@ use super::{CheckedInput, ExportRequest};
 use crate::flight::{Verdict, compare_names};
 use crate::markup::escaped;
 use crate::numbers::{farther_percent, significant_digits};
-use crate::scale::{ErrorSource, Ground, ImageKind, ScaleEstimate, ScalePair};
+use crate::scale::{Ground, ImageKind, ScaleEstimate, ScalePair};
 use crate::units::{LengthUnit, in_words};
 use crate::{PHOTO_COLUMNS, PhotoColumn, PhotoLine, ScaleReport};
 
@@ -186,8 +186,7 @@ fn sureness(line: &PhotoLine<'_>) -> String {
         said.push(difference.to_string());
     }
     if let Some(uncertainty) = line.uncertainty() {
-        let not_counted = uncertainty.not_counted(line.photo.pair);
-        let names: Vec<&str> = not_counted.map(ErrorSource::as_str).collect();
+        let names = uncertainty.not_counted_in_words(line.photo.pair);
         if !names.is_empty() {
             said.push(format!("errors not counted: {}", names.join(", ")));
         }

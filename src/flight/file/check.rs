@@ -115,7 +115,7 @@ impl FlightFile {
                 "uncertainty",
                 key,
                 format!("uncertainty.{key} is {value}"),
-                "give a standard deviation that is not negative, or remove the key",
+                "give a standard deviation that is neither negative nor beyond all measure, or remove the key",
             );
         }
         match (&photos.poses, &photos.reconstruction) {

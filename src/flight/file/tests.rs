@@ -233,6 +233,9 @@ fn errors_and_the_pair_are_read() {
         fault.unwrap_err().to_string()
     };
     assert!(fault("focal = -0.1").contains("uncertainty.focal is -0.1"));
+    // More is no error of anything, and 300 digits in a table.
+    assert!(fault("world_scale = 1e300").contains("beyond all measure"));
+    assert!(fault("position = 2e12").contains("beyond all measure"));
     assert!(fault("angle = [1, 2]").contains("expected a number or [x, y, z]"));
     assert!(fault("postion = 1").contains("did you mean 'position'?"));
     assert_eq!(FlightFile::parse(WHOLE).unwrap().pair(), ScalePair::Fitted);

@@ -252,7 +252,15 @@ fn doubts_of_field(
         let widths = ends.into_iter().flatten().map(|ends| ends.width_percent());
         widths.max_by(f64::total_cmp)
     });
-    if let Some(percent) = widest.filter(|&percent| percent > limit) {
+    let has_left = field
+        .uncertainty
+        .as_ref()
+        .is_some_and(|uncertainty| pair == ScalePair::Corners && uncertainty.leaves_surface);
+    if has_left {
+        let percent = None;
+        doubts.push(Doubt::WideInterval { percent, limit });
+    } else if let Some(percent) = widest.filter(|&percent| percent > limit) {
+        let percent = Some(percent);
         doubts.push(Doubt::WideInterval { percent, limit });
     }
     if let Some(uncertainty) = &field.uncertainty {

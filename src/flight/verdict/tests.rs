@@ -297,13 +297,27 @@ fn the_field_is_judged_for_the_pair_in_use() {
         assert_eq!(doubts(&field(percent, 1.0, 1.0), pair), [off]);
     }
     let wide = [Doubt::WideInterval {
-        percent: 26.0,
+        percent: Some(26.0),
         limit: 25.0,
     }];
     let noisy_corners = field(1.0, 1.0, 26.0);
     assert_eq!(both.map(|pair| doubts(&noisy_corners, pair).len()), [0, 1]);
     assert_eq!(doubts(&noisy_corners, ScalePair::Corners), wide);
     assert_eq!(doubts(&field(1.0, 26.0, 1.0), ScalePair::Fitted), wide);
+    // Rays of drawn errors leave the surface: there is no interval to be too wide, and it is not sure all the same.
+    let mut leaving = field(1.0, 1.0, 1.0);
+    if let Some(uncertainty) = &mut leaving.uncertainty {
+        (uncertainty.leaves_surface, uncertainty.top) = (true, None);
+    }
+    assert_eq!(doubts(&leaving, ScalePair::Fitted), []);
+    let [unsure] = &doubts(&leaving, ScalePair::Corners)[..] else {
+        panic!("one doubt");
+    };
+    assert!(
+        unsure
+            .to_string()
+            .contains("rays of its corners leave the surface")
+    );
     // The corners of this photo have one scale; its line has not.
     let mut steep = field(1.0, 1.0, 1.0);
     steep.fitted = steep.fitted.map(|line| FittedScale {

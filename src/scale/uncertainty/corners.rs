@@ -38,6 +38,10 @@ pub(super) struct CornerDraws {
     all: [Vec<f64>; 4],
     /// See `Uncertainty::parts_percent`.
     parts_percent: [Option<f64>; 4],
+    /// See `Uncertainty::leaves_surface`.
+    pub(super) leaves_surface: bool,
+    /// See `Uncertainty::known`.
+    pub(super) known: [bool; 4],
 }
 
 /// What is drawn once for all corners.
@@ -84,10 +88,12 @@ impl CornerDraws {
         surface: &Surface,
     ) -> Self {
         let stated = &photo.errors;
+        // Fewer say nothing of what lies between points; what is stated of each counts all the same.
+        let is_seen = depths.len() >= LEAST_POINTS;
         let has = Parts {
-            pose: stated.pose.position.is_some() || stated.pose.angle.is_some(),
+            pose: stated.pose.is_stated(),
             lens: stated.focal.is_some(),
-            surface: depths.len() >= LEAST_POINTS,
+            surface: is_seen || stated.surface.is_some(),
             world: stated.world_scale.is_some(),
         };
         let mut draws = Draws::new(SEED);
@@ -122,7 +128,7 @@ impl CornerDraws {
             let direction = camera_from_world * corner.direction?;
             let depth = distance * direction.z;
             let direction = direction / direction.z;
-            let errors = match has.surface {
+            let errors = match is_seen {
                 true => ErrorsAround::of(corner.pixel, depths),
                 false => ErrorsAround::default(),
             };
@@ -183,11 +189,21 @@ impl CornerDraws {
             (!squares.is_empty())
                 .then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt() * 100.0)
         });
+        let is_any = has.pose || has.lens || has.surface || has.world;
+        let all = match is_any {
+            true => of_parts(has),
+            false => Default::default(),
+        };
+        // Both corners of an edge are on the surface, and under the drawn errors too often one of them is not.
+        let [top_left, top_right, bottom_right, bottom_left] = &corners;
+        let has_left = |edge: &Vec<f64>, ends: [&Option<Around>; 2]| {
+            is_any && edge.is_empty() && ends.iter().all(|end| end.is_some())
+        };
         Self {
-            all: match has.pose || has.lens || has.surface || has.world {
-                true => of_parts(has),
-                false => Default::default(),
-            },
+            leaves_surface: has_left(&all[0], [top_left, top_right])
+                || has_left(&all[2], [bottom_left, bottom_right]),
+            known: [has.pose, has.lens, has.surface, has.world],
+            all,
             parts_percent,
         }
     }
@@ -358,9 +374,8 @@ fn edges_under(
                 };
                 along = hit.t;
             }
-            if parts.surface
-                && let Some(error) = corner.errors.draw(draws)
-            {
+            if parts.surface {
+                let error = corner.errors.draw(draws).unwrap_or(0.0);
                 let stated = photo.errors.surface.unwrap_or(0.0) * draws.normal();
                 let gap = unseen.gap(corner.tan_of_incidence, draws) * corner.roughness;
                 along = along * (1.0 + error + gap) + stated / direction.length();

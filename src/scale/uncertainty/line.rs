@@ -76,21 +76,13 @@ impl LineErrors {
             // In the world's axes, as positions are stated.
             let by_position = rotation * moved[index].by_position;
             let by_angle = moved[index].by_angle;
-            let of_angle = errors.pose.angle.map(|angle| {
-                let angle = angle.map(f64::to_radians);
-                (by_angle * angle).length_squared()
-            });
-            let of_position = errors
-                .pose
-                .position
-                .map(|position| (by_position * position).length_squared());
-            let pose = match (of_angle, of_position) {
-                (None, None) => None,
-                (a, b) => Some((a.unwrap_or(0.0) + b.unwrap_or(0.0)).sqrt()),
-            };
+            let pose = errors.pose.variance(by_angle, by_position).map(f64::sqrt);
             let by_focal = plane.dot(more[index] - less[index]) / (2.0 * step) * share;
             let lens = errors.focal.map(|focal| (by_focal * focal / 100.0).abs());
-            let surface = roughness.map(|roughness| {
+            // Too few points say nothing of what lies between them; what is stated of each counts all the same.
+            let is_known = roughness.is_some() || errors.surface.is_some();
+            let surface = is_known.then(|| {
+                let roughness = roughness.unwrap_or(0.0);
                 // The end of a line through independent values has four times the variance of their mean.
                 let seen = 2.0 * roughness / counted.sqrt();
                 let of_unseen = unseen.spread() * roughness;

@@ -28,7 +28,7 @@ pub use self::point_noise::PointNoise;
 use self::surface_error::{DepthErrors, plane_of, without_flying};
 use self::unseen::Unseen;
 use super::field::ScaleField;
-use super::{EdgeScales, FittedScale, PhotoScale, ScalePair, StatedErrors};
+use super::{EdgeScales, FittedScale, PhotoScale, PoseErrors, ScalePair, StatedErrors};
 use crate::surface::Surface;
 
 /// With fewer points nothing is known of a photo's surface.
@@ -111,6 +111,13 @@ pub struct Uncertainty {
     pub line_parts_percent: [Option<f64>; 4],
     /// The same of the corners' top and bottom.
     pub corner_parts_percent: [Option<f64>; 4],
+    /// Whether the top's or the bottom's corners are so unsure that the rays of many draws leave the surface: then nothing can be said
+    /// of how sure that edge is, and it is not sure.
+    pub leaves_surface: bool,
+    /// What is stated of the pose, where that is only one half of it: the other counts as without error.
+    pub half_a_pose: Option<HalfAPose>,
+    /// Which sources somebody states, or the cloud shows, in the order of [`ErrorSource::ALL`].
+    pub known: [bool; 4],
     /// How far points of one place lie apart; of a surface that came with its faces nothing is known of it.
     pub noise: PointNoise,
     /// How steep the plane stands that lies best through what the photo shows of a cloud, degrees from level; 0 of a surface that
@@ -175,6 +182,9 @@ impl Uncertainty {
             fitted_bottom: fitted(LineErrors::bottom),
             line_parts_percent,
             corner_parts_percent,
+            leaves_surface: corners.leaves_surface,
+            half_a_pose: HalfAPose::of(photo.errors.pose),
+            known: corners.known,
             noise: errors.noise,
             steepness: match surface.is_cloud() {
                 true => steepness(photo.field, plane),
@@ -209,10 +219,51 @@ impl Uncertainty {
 
     /// What is not counted, because nobody states it.
     pub fn not_counted(&self, pair: ScalePair) -> impl Iterator<Item = ErrorSource> {
+        let is_corners = pair == ScalePair::Corners || self.fitted_top.is_none();
+        // A part whose draws have left the surface is known to be large, and no number.
+        let is_large = self.leaves_surface && is_corners;
         let parts = ErrorSource::ALL.into_iter().zip(self.parts_percent(pair));
+        let parts = parts.zip(self.known);
         parts
-            .filter(|(_, part)| part.is_none())
-            .map(|(source, _)| source)
+            .filter(move |((_, part), is_known)| part.is_none() && !(is_large && *is_known))
+            .map(|((source, _), _)| source)
+    }
+
+    /// What is not counted of the scales that go to Split-Desktop, in words.
+    pub fn not_counted_in_words(&self, pair: ScalePair) -> Vec<&'static str> {
+        let half = self.half_a_pose.map(|half| match half {
+            HalfAPose::Position => "the angles of poses",
+            HalfAPose::Angle => "the positions of poses",
+        });
+        let of_sources = self.not_counted(pair).map(ErrorSource::as_str);
+        half.into_iter().chain(of_sources).collect()
+    }
+}
+
+/// What is stated of a pose where it is not all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HalfAPose {
+    /// How sure its position is.
+    Position,
+    /// How sure its angles are.
+    Angle,
+}
+
+impl HalfAPose {
+    fn of(stated: PoseErrors) -> Option<Self> {
+        match (stated.position, stated.angle) {
+            (Some(_), None) => Some(Self::Position),
+            (None, Some(_)) => Some(Self::Angle),
+            (Some(_), Some(_)) | (None, None) => None,
+        }
+    }
+
+    /// The other half, as its key is called in flight.toml.
+    pub fn lacks(self) -> &'static str {
+        match self {
+            Self::Position => "angle",
+            Self::Angle => "position",
+        }
     }
 }
 

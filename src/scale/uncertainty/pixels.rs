@@ -4,6 +4,9 @@
 //! badly predicted. What a wrong pose or focal length does is what it does to the plane through that
 //! place that is parallel to the photo's best plane (`line.rs` has the derivatives: m·X = 1, turned by w
 //! and moved by v the camera sees m + m × w + m (m·v)).
+//!
+//! What the line counts of holes in the cloud, of triangles that bridge them (`holes.rs`, `bridges.rs`) and of unusual noise
+//! is of the photo as a whole: here a hole's rim is as unsure as the points around it, and no more.
 
 use glam::DVec3;
 
@@ -48,11 +51,7 @@ impl PixelErrors {
             let of_square = |within: &Vec<DepthError>| root_mean_square(within).unwrap_or(of_all);
             squares.iter().map(of_square).collect()
         });
-        let is_stated = *stated
-            != StatedErrors {
-                surface: stated.surface,
-                ..StatedErrors::default()
-            };
+        let is_stated = *stated != StatedErrors::default();
         (is_stated || roughness.is_some()).then_some(Self {
             stated: *stated,
             plane,
@@ -71,13 +70,8 @@ impl PixelErrors {
         let plane = self.plane / (self.plane.dot(direction) * depth);
         let stated = &self.stated;
         let by_angle = direction.cross(plane) * depth;
-        let of_angle = stated.pose.angle.map(|angle| {
-            let angle = angle.map(f64::to_radians);
-            (by_angle * angle).length_squared()
-        });
         let by_position = field.pose().rotation * plane;
-        let of_position = stated.pose.position;
-        let of_position = of_position.map(|position| (by_position * position).length_squared());
+        let of_pose = stated.pose.variance(by_angle, by_position);
         let of_focal = stated.focal.and_then(|focal| {
             let step = 1e-4;
             let more = with_focal(field, plane, column, row, 1.0 + step)?;
@@ -89,11 +83,12 @@ impl PixelErrors {
         let pixel = field.grid.pixel(field.camera(), column, row);
         let roughness = self.roughness.as_ref();
         let roughness = roughness.and_then(|of| of.get(square(field.camera(), pixel)).copied());
-        let of_surface = roughness.map(|roughness| {
-            let stated = stated.surface.unwrap_or(0.0) / (depth * direction.length());
-            (roughness * self.unseen.wider()).powi(2) + stated * stated
+        let is_known = roughness.is_some() || stated.surface.is_some();
+        let of_surface = is_known.then(|| {
+            let of_each = stated.surface.unwrap_or(0.0) / (depth * direction.length());
+            (roughness.unwrap_or(0.0) * self.unseen.wider()).powi(2) + of_each * of_each
         });
-        let parts = [of_angle, of_position, of_focal, of_world, of_surface];
+        let parts = [of_pose, of_focal, of_world, of_surface];
         let share = parts.iter().flatten().sum::<f64>().sqrt();
         let too_large = self.unseen.bias * roughness.unwrap_or(0.0);
         Some(interval_of_scale(

@@ -25,6 +25,9 @@ pub(super) const MOST_POINTS: usize = 4000;
 /// pile and camera would make it say nothing of the others.
 pub(super) const FLYING: f64 = 5.0;
 
+/// A piece of a mesh that stands across the photo's plane counts as one at this cosine does, at most.
+const MOST_ACROSS: f64 = 0.1;
+
 /// By how much of a cell the squares are shifted that points twice as far apart are chosen from.
 pub(super) const SHIFTED: [DVec2; 4] = [
     DVec2::ZERO,
@@ -137,15 +140,18 @@ impl DepthErrors {
         };
         let error = |left_out: &LeftOut| {
             // m·(X - h up) = 1: moved up by h, the plane's depth along a ray grows by the share h m·up.
-            let relative = -left_out.above * plane.dot(up);
+            let along_up = plane.dot(camera_from_local * left_out.up);
+            let relative = -left_out.above * along_up;
             // A point high above its neighbours may lie where they predict nothing: at the camera.
             let predicted = (1.0 + relative).max(0.1);
             let (pixel, depth) = seen_at(left_out.point)?;
             Some(DepthError {
                 pixel,
                 relative: 1.0 / predicted - 1.0,
-                // A piece of the plane n·X = D takes D / (|n·up| z³) of the image plane for each of its area over (x, y).
-                area: left_out.star / depth.powi(3),
+                // A piece of the plane n·X = D takes D / (|n·up| z³) of the image plane for each of its area across up.
+                area: left_out.star * plane.length()
+                    / along_up.abs().max(MOST_ACROSS * plane.length())
+                    / depth.powi(3),
             })
         };
         // The field has triangulated what the photo sees, so nothing can fail here.
