@@ -42,7 +42,7 @@ pub(super) fn check(arguments: &CheckArguments, progress: &Progress) -> Result<A
 impl CheckArguments {
     /// What is written.
     pub(super) fn outputs(&self) -> Result<Outputs<'_>, String> {
-        self.output.outputs(self.flight.files())
+        self.output.outputs_of_text(self.flight.files())
     }
 }
 

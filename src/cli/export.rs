@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::flight_arguments::FlightArguments;
+use super::named_photos::NamedPhotos;
 use super::outputs::Force;
 use super::{Answer, OutputUnit};
 use crate::exports::{self, ExportRequest, Provenance, Replace, ScaleReport};
@@ -29,6 +30,8 @@ pub(super) struct ExportArguments {
     /// and those that were accepted.
     #[arg(long, value_enum, default_value = "all")]
     photos: Selection,
+    #[command(flatten)]
+    named: NamedPhotos,
     /// Also write each photo seen squarely, with one scale for the whole image: onto the best plane
     /// through what it shows, onto a horizontal plane, or laid over the surface from straight above.
     #[arg(long, value_enum, value_name = "ONTO")]
@@ -68,19 +71,44 @@ pub(super) fn export_of(
     let in_flight = |fault| FileError::new(path, fault).to_string();
     let review = opened.review(&Limits::default(), progress);
     let review = review.map_err(in_flight)?;
-    let selected = review.going_along(match arguments.photos {
+    let named = arguments.named.of(&opened.flight).map_err(in_flight)?;
+    let mut selected = review.going_along(match arguments.photos {
         Selection::All => Along::All,
         Selection::Trusted => Along::Trusted,
     });
+    let mut not_along = Vec::new();
+    for (photo, (selected, is_named)) in review.photos().zip(selected.iter_mut().zip(&named)) {
+        if arguments.named.is_any() && *is_named && !*selected {
+            let why = match photo.goes_along(Along::All) {
+                true => "it has a doubt that nobody has accepted",
+                false => "a [[review]] table leaves it out",
+            };
+            not_along.push(format!("photo '{}' is not exported: {why}", photo.name()));
+        }
+        *selected &= is_named;
+    }
     if !selected.contains(&true) {
-        let count = review.count();
+        let count = named.iter().filter(|named| **named).count();
+        let is_all = count == review.count();
+        let named = if is_all { "" } else { " that are named" };
+        let its = if is_all { "its" } else { "the" };
+        let (all, none) = match (count, is_all) {
+            (1, false) => (
+                "the photo that is named is".to_owned(),
+                "the photo that is named is not".to_owned(),
+            ),
+            _ => (
+                format!("all of {its} {count} photos{named} are"),
+                format!("none of {its} {count} photos{named} is"),
+            ),
+        };
         let fault = match arguments.photos {
             Selection::All => Fault::new(
-                format!("all of its {count} photos are left out by [[review]] tables"),
+                format!("{all} left out by [[review]] tables"),
                 "remove those that do not hold",
             ),
             Selection::Trusted => Fault::new(
-                format!("none of its {count} photos is without doubt or accepted"),
+                format!("{none} without doubt or accepted"),
                 "export all photos, and read the doubts in the sheet",
             ),
         };
@@ -132,6 +160,7 @@ pub(super) fn export_of(
     });
     let report = ScaleReport::new(&review, unit).of_photos(&selected);
     let mut warnings = opened.all_warnings();
+    warnings.extend(not_along);
     warnings.extend(summary.warnings.iter().cloned());
     warnings.extend(super::scales::notes_of(&report));
     let answer = Answer {

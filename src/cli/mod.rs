@@ -14,6 +14,7 @@ mod flight_arguments;
 mod info;
 mod interrupt;
 mod models;
+mod named_photos;
 mod of_photos;
 mod of_tables;
 mod on_surface;

@@ -38,6 +38,28 @@ impl OutputArguments {
     ) -> Result<Outputs<'_>, String> {
         Outputs::new(self.force, inputs).answer(self.output.as_deref())
     }
+
+    /// The same of a command whose answer is text for people: no program would read that in a .json.
+    pub(super) fn outputs_of_text<P: AsRef<Path>>(
+        &self,
+        inputs: impl IntoIterator<Item = P>,
+    ) -> Result<Outputs<'_>, String> {
+        let file = self.output.as_deref();
+        let ending = file.and_then(|file| Some((file, file.extension()?.to_string_lossy())));
+        match ending {
+            Some((file, ending)) if is_another(&ending) || is_numbers(&ending) => {
+                let what = format!("text for people is written here, and nothing as .{ending}");
+                let fault = Fault::new(what, "end the name in .txt");
+                Err(FileError::new(file, fault).to_string())
+            }
+            _ => self.outputs(inputs),
+        }
+    }
+}
+
+/// Whether a file that ends so holds numbers for programs.
+fn is_numbers(ending: &str) -> bool {
+    ["csv", "json"].contains(&ending.to_lowercase().as_str())
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -125,7 +147,7 @@ impl AnswerArguments {
 /// Whether a program that a file's ending calls would find what it does not read.
 fn is_another(ending: &str) -> bool {
     let ending = ending.to_lowercase();
-    let others = ["xlsx", "xls", "ods", "tsv", "xml", "html", "pdf"];
+    let others = ["xlsx", "xls", "ods", "tsv", "xml", "html", "pdf", "geojson"];
     others.contains(&ending.as_str())
 }
 

@@ -3,6 +3,7 @@
 use clap::Args;
 
 use super::flight_arguments::{FlightArguments, MemoryArguments};
+use super::named_photos::NamedPhotos;
 use super::outputs::{AnswerArguments, Outputs};
 use super::{Answer, OutputUnit};
 use crate::exports;
@@ -19,6 +20,8 @@ pub(super) struct ScalesArguments {
     /// Scales are in pixels per this unit.
     #[arg(long, value_enum, default_value = "cm")]
     unit: OutputUnit,
+    #[command(flatten)]
+    named: NamedPhotos,
     #[command(flatten)]
     answer: AnswerArguments,
 }
@@ -74,9 +77,11 @@ fn scales_text(
     review: &Review,
 ) -> Result<(String, Vec<String>), String> {
     let in_flight = |fault| arguments.flight.wrong(fault);
+    let named = arguments.named.of(review.flight()).map_err(in_flight)?;
     let report = exports::ScaleReport::new(review, arguments.unit.into())
         .with_scale_objects(&opened.settings.scale_objects)
-        .map_err(in_flight)?;
+        .map_err(in_flight)?
+        .of_photos(&named);
     let (csv, json) = (exports::scales_csv, exports::scales_json);
     let text = arguments
         .answer

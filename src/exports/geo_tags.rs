@@ -52,22 +52,24 @@ pub(crate) fn crs_in_words(crs: Option<&str>) -> String {
 /// Its tags.
 pub(crate) fn geo_tags(picture: &OnMap<'_>) -> GeoTags {
     let mut keys = Keys::default();
-    match &projected(picture.crs) {
-        Some(crs) => {
+    let map = projected(picture.crs);
+    let wkt = picture.crs.filter(|crs| crs.contains('['));
+    match (map.as_ref().and_then(code), wkt.filter(|_| map.is_some())) {
+        (Some(code), _) => {
             keys.short(MODEL_TYPE, PROJECTED);
             keys.short(RASTER_TYPE, PIXEL_IS_AREA);
-            match code(crs) {
-                Some(code) => keys.short(PROJECTED_CRS, code),
-                None => {
-                    // The words by which GDAL and ArcGIS know that WKT follows.
-                    let wkt = picture.crs.unwrap_or_default();
-                    keys.short(PROJECTED_CRS, USER_DEFINED);
-                    keys.text(PROJECTED_CITATION, &format!("ESRI PE String = {wkt}"));
-                    keys.unit(picture.unit);
-                }
-            }
+            keys.short(PROJECTED_CRS, code);
         }
-        None => {
+        (None, Some(wkt)) => {
+            // The words by which GDAL and ArcGIS know that WKT follows; GDAL looks for them only where the model is none that keys
+            // describe (rasterio 1.4.4 reads ESRI's WKT, GDAL's and WKT 2 of it, with their units).
+            keys.short(MODEL_TYPE, USER_DEFINED);
+            keys.short(RASTER_TYPE, PIXEL_IS_AREA);
+            keys.short(PROJECTED_CRS, USER_DEFINED);
+            keys.text(PROJECTED_CITATION, &format!("ESRI PE String = {wkt}"));
+            keys.unit(picture.unit);
+        }
+        (None, None) => {
             keys.short(MODEL_TYPE, USER_DEFINED);
             keys.short(RASTER_TYPE, PIXEL_IS_AREA);
             keys.text(CITATION, &crs_in_words(picture.crs));

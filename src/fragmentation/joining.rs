@@ -64,7 +64,10 @@ impl DistributionSet {
             }
             if let Some(other) = taken(curve) {
                 let what = format!("{} is there already, from {other}", curve.labels);
-                return Err(Fault::new(what, "give it another method or trial"));
+                return Err(Fault::new(
+                    what,
+                    "give it another method or trial (for 'psd compare': NAME=FILE)",
+                ));
             }
         }
         let mut seen = BTreeSet::new();

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::terrain::{Terrain, plane_through};
 use crate::fault::Fault;
+use crate::geometry::median;
 use crate::jobs::Progress;
 use crate::numbers::significant_digits;
 use crate::surface::{Surface, UpAxis, convex_hull};
@@ -24,6 +25,8 @@ const LEAST: f64 = 0.005;
 const PILE: f64 = 0.1;
 /// The share of its height that ground is not thinner than along x or y.
 const LYING: f64 = 0.5;
+/// So many points tell a median well enough.
+const MOST_HEIGHTS: usize = 100_000;
 /// How often what stands out of the floor is taken away from it.
 const ROUNDS: usize = 6;
 
@@ -218,6 +221,27 @@ fn largest_piece(is_in: &[bool], columns: usize) -> Vec<usize> {
     largest
 }
 
+/// The median heights of the surface's points in an area and outside of it: a terrace behind a crest may be taken for a pile. `None`
+/// where one of both has none.
+pub fn heights_in_and_about(surface: &Surface, area: &Polygon) -> Option<[f64; 2]> {
+    let points = surface.vertices();
+    let step = (points.len() / MOST_HEIGHTS).max(1);
+    let (mut within, mut about) = (Vec::new(), Vec::new());
+    for point in points.step_by(step) {
+        let place = point.truncate();
+        match area.distance_to_leg(place, place) <= 0.0 {
+            true => within.push(point.z),
+            false => about.push(point.z),
+        }
+    }
+    Some([median(&mut within)?, median(&mut about)?])
+}
+
+/// The same for people.
+pub fn heights_in_words([within, about]: [f64; 2], unit: &str) -> String {
+    format!("at heights about {within:.1} {unit} where all else is about {about:.1} {unit}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -245,6 +269,14 @@ mod tests {
         }
         let area = std::f64::consts::PI * 81.0;
         assert!((found.area() / area - 1.0).abs() < 0.08, "{}", found.area());
+        // Half of its area lies within 9 / sqrt(2) of its middle: 5 - 0.5 * 6.36 above a floor of 99.96 there, and of 100 elsewhere.
+        let [within, about] = heights_in_and_about(&surface, &found).unwrap();
+        assert!((within - 101.78).abs() < 0.1, "{within}");
+        assert!((about - 100.0).abs() < 0.02, "{about}");
+        assert_eq!(
+            heights_in_words([within, about], "m"),
+            "at heights about 101.8 m where all else is about 100.0 m"
+        );
     }
 
     /// A pile whose file has y up lies on its side: that is said, and what to write; of the pile itself nothing is.

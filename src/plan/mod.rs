@@ -52,7 +52,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-pub use area::{lying, pile};
+pub use area::{heights_in_and_about, heights_in_words, lying, pile};
 pub use cover::Cover;
 pub use drones::Drone;
 pub use forecast::Forecast;

@@ -130,6 +130,11 @@ pub fn make(folder: &Path, options: &SampleOptions, progress: &Progress) -> Resu
         Stop::Io(error) if error.kind() == io::ErrorKind::DirectoryNotEmpty => {
             Fault::new("the folder is not empty", "name a new folder")
         }
+        Stop::Io(error) if error.kind() == io::ErrorKind::NotFound => {
+            let within = folder.parent().unwrap_or(folder).display();
+            let what = format!("the sample cannot be written: the folder {within} is not there");
+            Fault::new(what, "make that folder first")
+        }
         Stop::Io(error) => cannot_write(&error),
     })
 }

@@ -9,12 +9,22 @@ use crate::surface::longest_edge;
 /// Edges of so many times the median one bridge a hole: between points of chance none is longer than five times.
 pub const BRIDGE: f64 = 10.0;
 
+/// Of a grid, whose triangles are all of one size, those that are so many times longer bridge cells without a height.
+const GRID_BRIDGE: f64 = 1.5;
+
+/// A grid has so large a share of its triangles within an eighth of a power of two about the median; of points of chance no more than
+/// a third is.
+const GRID_SHARE: f64 = 0.7;
+
 /// A smaller part of what is measured that triangles bridge is not worth a word.
 pub const LEAST_BRIDGED: f64 = 0.005;
 
 /// The sum of a line's ways over single triangles that are longer than [`BRIDGE`] times the median one.
 pub(super) fn long(ways: impl Iterator<Item = f64>) -> f64 {
-    let mut ways: Vec<f64> = ways.filter(|way| *way > 0.0).collect();
+    let mut ways: Vec<f64> = ways.collect();
+    // At a bend of the line two of its points may lie within rounding of each other.
+    let least = 1e-6 * ways.iter().sum::<f64>() / ways.len().max(1) as f64;
+    ways.retain(|way| *way > least);
     let place = ways.len() / 2;
     if place >= ways.len() {
         return 0.0;
@@ -46,7 +56,7 @@ impl Edges {
         self
     }
 
-    /// The area of those that are longer than [`BRIDGE`] times the median one.
+    /// The area of those that are longer than [`BRIDGE`] times the median one, of a grid than [`GRID_BRIDGE`] times.
     pub(super) fn bridged(&self) -> f64 {
         let all: u64 = self.0.values().map(|(count, _)| count).sum();
         let mut passed = 0;
@@ -57,7 +67,13 @@ impl Edges {
         let Some((median, _)) = median else {
             return 0.0;
         };
-        let limit = median.saturating_add((BRIDGE.log2() * 8.0) as i32);
+        let about = median.saturating_sub(1)..=median.saturating_add(1);
+        let about: u64 = self.0.range(about).map(|(_, (count, _))| count).sum();
+        let times = match about as f64 > GRID_SHARE * all as f64 {
+            true => GRID_BRIDGE,
+            false => BRIDGE,
+        };
+        let limit = median.saturating_add((times.log2() * 8.0) as i32);
         let longer = self.0.range(limit.saturating_add(1)..);
         longer.map(|(_, (_, area))| area).sum()
     }

@@ -353,6 +353,26 @@ fn a_missing_reference_is_said_first() {
     assert!(!root.join("out/a").exists());
 }
 
+/// Of many blasts one was sieved: the others are done all the same, and it is said that nothing holds their sizes.
+#[test]
+fn a_blast_that_nobody_sieved_is_done() {
+    let root = tempfile::tempdir().expect("a folder");
+    let root = root.path();
+    with_photos(&root.join("a"), 1);
+    let season = "format = 1\nto = \"out\"\nsteps = [\"delineate\", \"psd\"]\n[delineate]\nengine = \"classical\"\n[[flight]]\npath = \"a\"\n";
+    fs::write(root.join("SEASON.toml"), season).expect("written");
+    let output = batch(root, &["SEASON.toml"]);
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(status(&output), 0, "{text}");
+    let report = fs::read_to_string(root.join("out/season.html")).expect("a report");
+    assert!(
+        report.contains("psd: no reference is named for it"),
+        "{report}"
+    );
+    assert!(root.join("out/a/fragments/distribution.csv").is_file());
+    assert!(!root.join("out/a/psd.csv").exists());
+}
+
 /// All steps of a season, by a SEASON.toml: every file is the one that the single command writes.
 #[test]
 fn every_file_is_that_of_the_single_command() {

@@ -275,3 +275,37 @@ fn what_cannot_be_written_is_said_before_anything_is() {
     assert_eq!(left.len(), 1, "{left:?}");
     assert!(Path::new(&csv).exists());
 }
+
+/// The same program's files of two blasts are one method by their words: that they are merged is said, with what calls them apart.
+#[test]
+fn the_same_file_of_two_blasts_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let curve = |photo: &str, scale: f64| {
+        let mut text = String::from("method,trial,photo,size_mm,percent_passing\n");
+        for [size, percent] in SIEVE {
+            text += &format!("fragscale (learned),,{photo},{},{percent}\n", size * scale);
+        }
+        text
+    };
+    for (blast, scale) in [("a", 1.0), ("b", 1.5)] {
+        fs::create_dir(folder.path().join(blast)).expect("a folder");
+        let text = curve(&format!("{blast}.jpg"), scale);
+        fs::write(folder.path().join(blast).join("distribution.csv"), text).expect("written");
+    }
+    fs::write(folder.path().join("sieve.csv"), table()).expect("written");
+    let sieve = path(&folder, "sieve.csv");
+    let [a, b] = ["a", "b"].map(|blast| path(&folder, &format!("{blast}/distribution.csv")));
+    let said = |arguments: &[&str]| {
+        let mut all = vec!["psd", "compare"];
+        all.extend(arguments);
+        String::from_utf8(fragscale(&all).stderr).expect("UTF-8")
+    };
+    let both = said(&[&sieve, &a, &b]);
+    assert!(
+        both.contains("both are taken for one method and merged"),
+        "{both}"
+    );
+    assert!(both.contains(&format!("(A={a} B={b})")), "{both}");
+    let apart = said(&[&sieve, &format!("A={a}"), &format!("B={b}")]);
+    assert!(!apart.contains("taken for one method"), "{apart}");
+}

@@ -6,7 +6,7 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use crate::common::{fragscale, stdout_of};
+use crate::common::{error_of, fragscale, scales_json, stdout_of};
 use fragscale::exports::{
     ExportRequest, ExportSummary, Provenance, Replace, export_for_split_desktop,
 };
@@ -740,4 +740,50 @@ fn names_do_not_leave_the_folder() {
     let sheet = text(&files, "scales.html");
     assert!(sheet.contains("../&lt;b&gt;&amp;.jpg") && !sheet.contains("<b>&"));
     assert!(sheet.contains("src=\"thumbnails/_b_%26.jpg\""));
+}
+
+/// The nine photos of a survey that are for Split-Desktop, and not the hundred beside them: those that are named, in the flight's
+/// order, with the numbers that they have among all.
+#[test]
+fn only_photos_that_are_named() {
+    let all = scales_json(&sample(), &[]);
+    let named = ["--photo", "IMG_0003.jpg", "--photo", "IMG_0001.jpg"];
+    let some = scales_json(&sample(), &named);
+    let photos = |report: &Value| report["photos"].as_array().expect("photos").clone();
+    let all = photos(&all);
+    assert_eq!(photos(&some), [all[0].clone(), all[2].clone()]);
+    let to = tempfile::tempdir().expect("a folder");
+    let folder = to.path().join("split");
+    let (flight, folder) = (sample(), folder.to_str().expect("UTF-8").to_owned());
+    let flight = flight.to_str().expect("UTF-8");
+    stdout_of(&["export", flight, "--to", &folder, "--photo", "IMG_0002.jpg"]);
+    let table = fs::read_to_string(Path::new(&folder).join("scales.csv")).expect("a table");
+    let rows: Vec<&str> = table.lines().skip(1).collect();
+    assert!(
+        rows.len() == 1 && rows[0].starts_with("IMG_0002.jpg,"),
+        "{table}"
+    );
+    let photos = fs::read_dir(Path::new(&folder).join("photos")).expect("photos");
+    assert_eq!(photos.count(), 1);
+    // One that a review leaves out is not exported for being named, and that is said.
+    let copy = copy_of_sample();
+    let left_out = copy.path().join("flight.toml");
+    let text = fs::read_to_string(&left_out).expect("a flight");
+    let review = "\n[[review]]\nphoto = \"IMG_0003.jpg\"\ndecision = \"left-out\"\n";
+    fs::write(&left_out, text + review).expect("written");
+    let to = copy.path().join("split");
+    let words = [&left_out, &to].map(|path| path.to_str().expect("UTF-8").to_owned());
+    let both = ["--photo", "IMG_0003.jpg", "--photo", "IMG_0002.jpg"];
+    let output = fragscale(&[&["export", &words[0], "--to", &words[1]][..], &both].concat());
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    assert!(
+        said.contains("photo 'IMG_0003.jpg' is not exported: a [[review]] table leaves it out"),
+        "{said}"
+    );
+    let error = error_of(&["scales", flight, "--photo", "IMG_0033.jpg"]);
+    assert!(
+        error.contains("there is no photo 'IMG_0033.jpg'"),
+        "{error}"
+    );
 }

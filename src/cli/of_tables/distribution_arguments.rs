@@ -1,6 +1,7 @@
 //! The arguments that `psd fit` and `psd compare` have in common: the files with their columns, the
 //! function, what is written.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -132,6 +133,25 @@ impl DistributionArguments {
                 .map_err(|fault| FileError::new(file, fault).to_string())?;
             found.extend(renamed);
             let name = file.display().to_string();
+            // A program's file of the same name in another folder is of another blast as like as not.
+            let methods = |set: &DistributionSet| -> BTreeSet<String> {
+                set.curves
+                    .iter()
+                    .map(|curve| curve.labels.method.clone())
+                    .collect()
+            };
+            let of_now = methods(&set);
+            let earlier = read.iter().find_map(|(other, name, of)| {
+                let is_alike = named.is_none() && other.file_name() == file.file_name();
+                let shared = methods(of).intersection(&of_now).next().cloned();
+                Some((name, shared?)).filter(|_| is_alike)
+            });
+            if let Some((other, method)) = earlier {
+                found.push(format!(
+                    "'{method}' is in {other}, too: both are taken for one method and merged; to compare them call them apart \
+                     (A={other} B={name})"
+                ));
+            }
             warnings.extend(found.iter().map(|warning| format!("{name}: {warning}")));
             read.push((file, name, set));
         }

@@ -12,6 +12,7 @@ use crate::cli::outputs::AnswerArguments;
 use crate::exports::{self, MeasuredUnit, ProfileReport};
 use crate::fault::Fault;
 use crate::formats::FileError;
+use crate::geodesy::Crs;
 use crate::jobs::Progress;
 use crate::opening::places;
 use crate::survey::Profile;
@@ -56,10 +57,14 @@ pub(in crate::cli) fn profile(
     let profile = Profile::along(&parts.surface, &line).map_err(|error| error.to_string())?;
     if profile.runs.is_empty() {
         let what = "the line does not meet the surface".to_owned();
-        return Err(in_flight(
-            what,
-            "give places in its coordinates; 'fragscale info' shows its bounds",
-        ));
+        let world = opened.crs.as_deref().map(Crs::understand);
+        let remedy = match world {
+            Some(Ok(crs)) => format!("give places in the world's coordinates ({})", crs.name()),
+            Some(Err(_)) | None => {
+                "give places in its coordinates; 'fragscale info' shows its bounds".to_owned()
+            }
+        };
+        return Err(in_flight(what, &remedy));
     }
     let report = ProfileReport {
         flight: &parts.name,

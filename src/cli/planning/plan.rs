@@ -361,8 +361,11 @@ fn planned(
             let pile = plan::pile(&parts.surface, progress).map_err(in_flight)?;
             let [min, max] = extent(pile.corners());
             let (size, middle) = (max - min, (min + max) / 2.0);
+            let heights = plan::heights_in_and_about(&parts.surface, &pile);
+            let heights = heights.map(|heights| plan::heights_in_words(heights, &unit.to_string()));
+            let heights = heights.map_or_else(String::new, |heights| format!(", {heights}"));
             warnings.push(format!(
-                "the area is the pile that was found, {:.1} x {:.1} {} around ({:.1}, {:.1}); --area takes another",
+                "the area is the pile that was found, {:.1} x {:.1} {} around ({:.1}, {:.1}){heights}; --area takes another",
                 size.x, size.y, unit, middle.x, middle.y
             ));
             pile

@@ -73,10 +73,10 @@ fn level(number: f64) -> String {
 }
 
 /// That a cloud has no points in a part of what is measured, and triangles bridge it; `None` of little.
-fn bridged(measured: &str, share: f64) -> Option<String> {
+fn bridged(measured: &str, share: f64, of_grids: &str) -> Option<String> {
     (share > LEAST_BRIDGED).then(|| {
         format!(
-            "in {} of {measured} the cloud has no points, and triangles more than {BRIDGE:.0} times as long as most of them bridge it: \
+            "in {} of {measured} the cloud has no points, and triangles more than {BRIDGE:.0} times as long as most of them{of_grids} bridge it: \
              what is there was not measured (a longest edge, max_edge of [surface], makes holes of them)",
             percent(share)
         )

@@ -21,7 +21,9 @@ const SIDES: [&str; 2] = ["before", "after"];
 
 /// What an engineer should know of a profile, a sentence each.
 pub fn profile_warnings(profile: &Profile) -> Vec<String> {
-    bridged("the line", profile.bridged).into_iter().collect()
+    bridged("the line", profile.bridged, "")
+        .into_iter()
+        .collect()
 }
 
 /// Crest, toes and angles of repose as text.

@@ -113,7 +113,11 @@ pub fn volume_warnings(volume: &Volume) -> Vec<String> {
             100.0 * volume.doubtful
         )
     });
-    let bridged = bridged("the polygon", volume.bridged);
+    let bridged = bridged(
+        "the polygon",
+        volume.bridged,
+        " (of a grid, longer than its cells)",
+    );
     [hole, bridged, bodies, doubtful]
         .into_iter()
         .flatten()

@@ -204,6 +204,14 @@ fn a_frame_of_its_own_is_said_to_be_one() {
     let (mine, text) = keys(Some(wkt));
     assert_eq!(text, format!("ESRI PE String = {wkt}|"));
     assert_eq!(mine[12..16], [3072, 0, 1, 32767]);
+    // GDAL reads WKT there only of a model that keys do not describe.
+    assert_eq!(mine[4..8], [1024, 0, 1, 32767]);
+    // What is no WKT is not written as WKT.
+    let (proj, text) = keys(Some(
+        "+proj=tmerc +lat_0=0 +lon_0=14.7 +k=1 +x_0=500000 +y_0=0 +datum=WGS84 +units=m +no_defs",
+    ));
+    assert!(!text.contains("PE String"), "{text}");
+    assert_eq!(proj[4..8], [1024, 0, 1, 32767]);
 }
 
 fn number(node: Node<'_, '_>, attribute: &str) -> f64 {

@@ -1,6 +1,8 @@
 //! Points as text: .xyz, .txt, .csv, .asc. There is no specification; this is what CloudCompare,
 //! PDAL, Agisoft, Pix4D and spreadsheets write.
 //!
+//! - COLMAP's points3D.txt without its comment (POINT3D_ID X Y Z R G B ERROR TRACK) is told by its numbers, and that is said.
+//!   Decimal commas between blanks are refused.
 //! - One point a line; empty lines and lines that begin with `#` or `//` are passed over, but the
 //!   first line, or the first behind such marks, may name the columns.
 //! - The separator is found on the first line of numbers: comma, semicolon, tab or spaces. With
@@ -70,6 +72,9 @@ pub(crate) fn read(
                 let separator = Separator::of(text);
                 let wrong = separator.wrong_number(text, &mut fields, named.as_ref());
                 if let Some(word) = wrong {
+                    if !is_comment && between_blanks_are_decimal_commas(text) {
+                        return Err(decimal_commas(line_number, text, "blanks"));
+                    }
                     // Names, or a comment in words.
                     let columns = Columns::of_names(&separator.split(text));
                     if columns.is_none() && !is_comment {
@@ -97,7 +102,19 @@ pub(crate) fn read(
                 if is_comment || fields.len() == 1 {
                     continue;
                 }
-                let columns = named.unwrap_or_else(|| Columns::of_numbers(&fields));
+                let of_colmap = Columns::of_colmap(&fields).filter(|_| named.is_none());
+                if of_colmap.is_some() {
+                    // Its first column may count the lines.
+                    counter = None;
+                    file.warnings.push(
+                        "its columns are taken for those of COLMAP's points3D.txt: a number, x, y, z, red, green, blue, an error, and \
+                         where photos show it"
+                            .to_owned(),
+                    );
+                }
+                let columns = named
+                    .or(of_colmap)
+                    .unwrap_or_else(|| Columns::of_numbers(&fields));
                 layout = Some((separator, columns));
                 (separator, columns)
             }
@@ -116,14 +133,7 @@ pub(crate) fn read(
         if separator == Separator::Comma && looked_at < LOOKED_AT {
             looked_at += 1;
             if are_decimal_commas(text, names) {
-                return Err(Fault::at(
-                    line_number,
-                    format!(
-                        "'{}' may be numbers with decimal commas between commas",
-                        shown(text)
-                    ),
-                    "write decimal points, or semicolons between the numbers",
-                ));
+                return Err(decimal_commas(line_number, text, "commas"));
             }
         }
         counter = counter.filter(|_| named.is_none() && fields.len() > 3);
@@ -216,6 +226,25 @@ fn decimal_commas_in_quotes(line: &str) -> Option<String> {
     }
     let plain: String = plain.collect();
     has_comma.then_some(plain)
+}
+
+fn decimal_commas(line: u64, text: &str, between: &str) -> Fault {
+    let text = shown(text);
+    Fault::at(
+        line,
+        format!("'{text}' may be numbers with decimal commas between {between}"),
+        "write decimal points, or semicolons between the numbers",
+    )
+}
+
+/// Whether these are three numbers or more between blanks or tabs, and one or more have a decimal comma.
+fn between_blanks_are_decimal_commas(text: &str) -> bool {
+    let is_number = |word: &str| {
+        let parts: Vec<&str> = word.split(',').collect();
+        parts.len() <= 2 && parts.concat().parse::<f64>().is_ok() && !word.contains('.')
+    };
+    let words: Vec<&str> = text.split_whitespace().collect();
+    words.len() >= 3 && words.iter().all(|word| is_number(word)) && text.contains(',')
 }
 
 fn not_a_number(line: u64, word: &str) -> Fault {
@@ -358,6 +387,31 @@ impl Columns {
             color: fractions.or(whole),
             fractions: fractions.is_some(),
             angles: find(&["omega", "yaw", "heading", "pitch"]).is_some(),
+        })
+    }
+
+    /// Those of COLMAP's points3D.txt without its comment: POINT3D_ID X Y Z R G B ERROR, then IMAGE_ID POINT2D_IDX of each photo.
+    fn of_colmap(first: &[f64]) -> Option<Self> {
+        let is_count = |value: &f64| value.fract() == 0.0 && *value >= 0.0;
+        let [id, x, y, z, colors @ .., error] = first.get(..8)? else {
+            return None;
+        };
+        // Two photos at least show each; laser scanners write up to three whole numbers behind a time.
+        let track = first.get(8..).filter(|track| track.len() >= 4)?;
+        let is_one = is_count(id)
+            && [x, y, z].iter().any(|value| value.fract() != 0.0)
+            && colors
+                .iter()
+                .all(|value| is_count(value) && *value <= 255.0)
+            && error.fract() != 0.0
+            && (0.0..100.0).contains(error)
+            && track.len() % 2 == 0
+            && track.iter().all(is_count);
+        is_one.then_some(Self {
+            position: [1, 2, 3],
+            color: Some([4, 5, 6]),
+            fractions: false,
+            angles: false,
         })
     }
 
@@ -514,6 +568,38 @@ mod tests {
         assert_eq!(colors("//X Y Z Rf Gf Bf\n1 2 3 1 0.5 0\n"), [[255, 128, 0]]);
     }
 
+    /// As COLMAP writes them, but for its comment; tracks are of any length.
+    #[test]
+    fn points_of_colmap_without_its_comment() {
+        let text = "63390 1.67 0.6 12.9 115 121 122 1.33 16 6542 15 7345\n\
+                    17 -1.5 0.25 3 0 255 7 0.2 4 1 5 17\n";
+        let cloud = read_text(text).unwrap().cloud;
+        assert_eq!(
+            cloud.points,
+            [DVec3::new(1.67, 0.6, 12.9), DVec3::new(-1.5, 0.25, 3.0)]
+        );
+        assert_eq!(cloud.colors, [[115, 121, 122], [0, 255, 7]]);
+        // Numbers may count the lines.
+        let counted = text.replace("63390 ", "1 ").replace("17 -1.5", "2 -1.5");
+        let counted = counted.clone()
+            + &counted
+                .replace("2 -1.5", "3 -1.5")
+                .replace("1 1.67", "4 1.67");
+        assert_eq!(read_text(&counted).unwrap().cloud.points.len(), 4);
+        // Colours with normals, a scanner's intensity with time, class and return, are what they were.
+        for (line, first) in [
+            ("5 1 2 10 20 30 0.5 0.5 0.7 9\n", DVec3::new(5.0, 1.0, 2.0)),
+            (
+                "500000 5000000 100.00 35 40 50 60 1.500 1 2\n",
+                DVec3::new(500_000.0, 5_000_000.0, 100.0),
+            ),
+        ] {
+            let found = read_text(&line.repeat(2)).unwrap();
+            assert_eq!(found.cloud.points[0], first);
+            assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+        }
+    }
+
     #[test]
     fn decimal_commas_between_commas_are_refused() {
         let refused = |text: &str| {
@@ -529,6 +615,8 @@ mod tests {
             Some(2)
         );
         assert_eq!(refused("x,y,z\n1,5,2,5,3,5\n"), Some(2));
+        assert_eq!(refused("500000,123 5000000,5 160,2\n"), Some(1));
+        assert_eq!(refused("X\tY\tZ\n500000,123\t5000000,5\t160,2\n"), Some(2));
         // Colours are whole, too.
         assert_eq!(
             points("451902,5410899,90,12,0,255\n"),

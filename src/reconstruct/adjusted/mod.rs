@@ -77,6 +77,8 @@ pub(crate) fn adjusted(
             given.as_pinholes(&mut model, photos)?;
         }
         placing::place(&mut model, &whose, progress)?;
+        // Adjusted, rays of two photos that hardly cross may meet a hundred metres off.
+        stray::remove(&mut model);
         if let Some(given) = &given {
             given.as_shot(&mut model, photos)?;
         }

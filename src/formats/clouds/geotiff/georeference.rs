@@ -12,6 +12,9 @@ use crate::clouds::geo_keys::{
 };
 use crate::fault::Fault;
 
+/// The words in front of WKT.
+const PE_STRING: &str = "ESRI PE String = ";
+
 /// What people call the system; the second for the projected one alone.
 const CITATIONS: [u16; 2] = [3073, 1026];
 
@@ -60,7 +63,8 @@ impl Georeference {
                 let [column, row, _, x, y, ..] = tie[..] else {
                     return Err(bad_tag("ModelTiepoint", &tie));
                 };
-                // Rows run south.
+                // Rows run south, also where a writer says so by a minus, as GDAL takes it.
+                let height = height.abs();
                 let origin = DVec2::new(x - column * width, y + row * height);
                 (origin, DVec2::new(width, 0.0), DVec2::new(0.0, -height))
             }
@@ -176,8 +180,13 @@ impl Keys {
         } else {
             PROJECTED_CRS
         };
+        let wkt = self
+            .citation()
+            .and_then(|name| name.strip_prefix(PE_STRING));
         match self.short(key) {
             Some(0) | None => {}
+            // GDAL, ArcGIS and fragscale write WKT behind these words.
+            Some(USER_DEFINED) if wkt.is_some() => file.crs = wkt.map(str::to_owned),
             Some(USER_DEFINED) => {
                 let name = self.citation().unwrap_or("unnamed");
                 file.warnings.push(format!(

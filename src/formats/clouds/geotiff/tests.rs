@@ -20,6 +20,7 @@ struct Tags {
     tie: Option<Vec<f64>>,
     matrix: Option<[f64; 16]>,
     keys: Vec<[u16; 4]>,
+    texts: Option<String>,
     no_data: Option<&'static str>,
     metadata: Option<&'static str>,
 }
@@ -31,6 +32,7 @@ fn utm() -> Tags {
         tie: Some(vec![0.0, 0.0, 0.0, 500_000.0, 5_000_000.0, 0.0]),
         matrix: None,
         keys: vec![[1024, 0, 1, 1], [1025, 0, 1, 1], [3072, 0, 1, 32_630]],
+        texts: None,
         no_data: None,
         metadata: None,
     }
@@ -69,6 +71,11 @@ where
             .write_tag(Tag::GeoKeyDirectoryTag, &keys[..])
             .unwrap();
     }
+    if let Some(texts) = &tags.texts {
+        directory
+            .write_tag(Tag::GeoAsciiParamsTag, texts.as_str())
+            .unwrap();
+    }
     if let Some(no_data) = tags.no_data {
         directory.write_tag(Tag::GdalNodata, no_data).unwrap();
     }
@@ -101,6 +108,11 @@ fn cells_become_points_at_their_middle() {
     assert!(!file.geographic);
     assert_eq!(file.warnings, ["1 of 15 cells have no elevation"]);
     assert!(file.cloud.triangles.is_empty());
+    // A writer's minus before the height of a cell, which others take for its size.
+    let mut minus = utm();
+    minus.scale = Some([0.5, -0.5, 0.0]);
+    let same = read_bytes(&written::<Gray32Float>(3, &CELLS, &minus)).unwrap();
+    assert_eq!(same.cloud.points, file.cloud.points);
 }
 
 #[test]
@@ -152,6 +164,20 @@ fn coordinate_systems() {
     let file = read_bytes(&written::<Gray32Float>(3, &CELLS, &tags)).unwrap();
     assert_eq!(file.crs.as_deref(), Some("EPSG:4326"));
     assert!(file.geographic);
+
+    // As GDAL, ArcGIS and fragscale (`exports::geo_tags`) write a system that has no code.
+    let wkt = "PROJCS[\"Mine grid\",GEOGCS[\"WGS 84\"]]";
+    let text = format!("ESRI PE String = {wkt}|");
+    let length = text.len() as u16;
+    tags.keys = vec![
+        [1024, 0, 1, 32_767],
+        [3072, 0, 1, 32_767],
+        [3073, 34_737, length, 0],
+    ];
+    tags.texts = Some(text);
+    let file = read_bytes(&written::<Gray32Float>(3, &CELLS, &tags)).unwrap();
+    assert_eq!((file.crs.as_deref(), file.geographic), (Some(wkt), false));
+    tags.texts = None;
 
     // A projection by parameters is not its geographic base.
     tags.keys = vec![[1024, 0, 1, 1], [2048, 0, 1, 4326], [3072, 0, 1, 32_767]];

@@ -145,7 +145,13 @@ fn of_size_role(words: &[String], unit: Option<SizeUnit>) -> Role {
         "block",
         "stone",
         "nominal",
+        "sieb",
+        "siebe",
         "siebweite",
+        "siebgröße",
+        "siebgrösse",
+        "siebgroesse",
+        "sieböffnung",
         "maschenweite",
         "ouverture",
         "abertura",
@@ -390,7 +396,7 @@ pub(super) fn role(name: &str) -> Role {
         && !any(&["over", "above", "larger"])
         && !name.contains('>');
     if within(PASSING_NAMES)
-        || any(&["pass", "pasa"])
+        || any(&["pass", "pasa", "through"])
         || cumulative.contains(&joined.as_str())
         || is_volume_below
     {

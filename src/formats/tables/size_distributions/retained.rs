@@ -32,6 +32,7 @@ const PANS: &[&str] = &[
     "tray", // German, French, Spanish
     "boden",
     "schale",
+    "pfanne",
     "fond",
     "fondo",
     "ciego", // Portuguese, Polish, Swedish, Turkish, Russian

@@ -48,6 +48,10 @@ pub(super) const SIZE_NAMES: &[&str] = &[
     "aperture",
     "diameter",
     "siebweite",
+    "siebgröße",
+    "siebgrösse",
+    "siebgroesse",
+    "sieböffnung",
     "maschenweite",
     "korngröße",
     "korngrösse",
@@ -80,6 +84,7 @@ pub(super) const SIZE_NAMES: &[&str] = &[
 
 /// Words that are names of sieves and sizes by themselves, and parts of other words.
 pub(super) const SIZE_WORDS: &[&str] = &[
+    "sieb",
     "maglia",
     "sito",
     "oczko",
@@ -96,6 +101,7 @@ pub(super) const PASSING_NAMES: &[&str] = &[
     "passed",
     "finer",
     "undersize",
+    "passes",
     "durchgang",
     "passant",
     "pasante",

@@ -439,6 +439,8 @@ fn laboratories_write_german_french_and_spanish() {
     for text in [
         "Siebweite (mm);Durchgang (%)\n40;80,0\n10;20,0\n",
         "Maschenweite [mm];Rückstand [g]\n40;20,0\n10;60,0\nBoden;20,0\nSumme;100,0\n",
+        "Sieb (mm);Durchgang (%)\n40;80,0\n10;20,0\n",
+        "Siebgröße (mm);Rückstand (kg)\n40;20,0\n10;60,0\nPfanne;20,0\n",
         "Ouverture (mm);Refus cumulé (%)\n40;20,0\n10;80,0\n",
         "Tamis (mm);Passant (%)\n40;80,0\n10;20,0\n",
         "Malla (mm);Peso retenido (g)\n40;20,0\n10;60,0\nFondo;20,0\n",
