@@ -40,6 +40,13 @@ impl State {
                 }
             }
             Command::Open(path) => self.open_or_ask(vec![path]),
+            Command::ReadAgain => {
+                if let Some(open) = &self.open {
+                    let paths = vec![open.files.path.clone()];
+                    let named = Named::Again;
+                    self.leave(Leaving::Read { paths, named });
+                }
+            }
             Command::DropFlight(paths) => self.open_or_ask(paths),
             Command::Add(path) => self.leave(Leaving::Read {
                 paths: vec![path],
@@ -63,7 +70,11 @@ impl State {
                     self.save();
                 }
             }
-            Command::Keep => self.held_back = None,
+            Command::Keep => {
+                self.held_back = None;
+                // What was to come behind the saving comes not.
+                self.after_saving = None;
+            }
             Command::Save => self.save(),
             Command::SaveAs(to) => self.save_as(to),
             Command::Export(to) => self.export(to),
@@ -133,11 +144,13 @@ impl State {
             Command::ToggleRight => self.preferences.right_open ^= true,
             Command::ToggleHealth => self.preferences.health_open ^= true,
             Command::DismissNotice => self.notice = None,
-            Command::CopyScales => {
-                if let Some(text) = self.scales_to_copy() {
-                    self.copy(text);
+            Command::CopyScales => match self.scales_to_copy() {
+                Some(text) => self.copy(text),
+                None => {
+                    let text = "no scales are copied: they are being computed, or there are none";
+                    self.say(Severity::Note, text);
                 }
-            }
+            },
             Command::Copy(text) => self.copy(text),
             Command::Report(text) => self.say(Severity::Error, &text),
             Command::TakeAnswer => self.answered = None,
@@ -164,7 +177,16 @@ impl State {
                     self.undo_picks_or_settings(History::redo, History::redo, History::redo);
                 self.say(Severity::Note, &with_what("done again", &changed));
             }
-            Command::Set(settings) => self.set_settings(settings),
+            Command::Set(after) => {
+                let open = self.open.as_ref();
+                let now = open.map_or_else(|| after.clone(), |open| open.settings());
+                // Made of those of the frame's beginning, which another command may have changed since.
+                let settings = match &self.settings_of_frame {
+                    Some(before) => now.with_changes(before, after),
+                    None => after,
+                };
+                self.set_settings(settings);
+            }
             Command::ExportRectified(on) => self.preferences.export_rectified = on,
             Command::Choose(photo, along) => self.choose(photo, along),
             Command::ChooseAll(choice) => self.choose_all(choice),
@@ -243,7 +265,19 @@ impl State {
     /// Leaves the flight on the screen, unless something would be lost: then asks first.
     pub(crate) fn leave(&mut self, leaving: Leaving) {
         let writes = leaving == Leaving::Quit && self.work.is_writing();
-        if self.is_changed() || writes {
+        let is_again = matches!(
+            &leaving,
+            Leaving::Read {
+                named: Named::Again,
+                ..
+            }
+        );
+        let is_lost = match &self.open {
+            // What was added stays.
+            Some(open) if is_again => open.is_changed() && open.is_edited(),
+            _ => self.is_changed(),
+        };
+        if is_lost || writes {
             self.held_back = Some(HeldBack::Leave(leaving));
         } else {
             self.go_on(HeldBack::Leave(leaving));
@@ -311,9 +345,6 @@ impl State {
                 if let Some(open) = self.open.as_mut().filter(|_| reviews) {
                     open.show_reason();
                 }
-                if let Some(open) = &mut self.open {
-                    open.leave_fragments();
-                }
                 self.load_preview();
                 self.begin_fragments();
             }
@@ -375,6 +406,10 @@ impl State {
             return;
         }
         self.answered = None;
+        if self.asking == Some(Asking::Add) && asking.is_none() && self.open.is_some() {
+            // Who does not name what the flight lacks that could not be opened goes on with the one on the screen.
+            self.tried = None;
+        }
         self.asking = asking;
         if asking != Some(Asking::SaveAs) {
             // Who does not say where to save does not want to go on either.
@@ -401,13 +436,12 @@ impl State {
         let undone = picked
             .filter(|picked| picked.is_on)
             .is_some_and(|picked| picks(&mut picked.history));
-        let undone = undone
-            || self
-                .open
-                .as_mut()
-                .is_some_and(|open| open.undo_clip(limits));
         if undone {
-            return Vec::new();
+            return vec!["picked points"];
+        }
+        let open = self.open.as_mut();
+        if open.is_some_and(|open| open.undo_clip(limits)) {
+            return vec!["the clipping box"];
         }
         let settings_now = |state: &Self| state.open.as_ref().map(|open| open.settings());
         let before = settings_now(self);
@@ -428,12 +462,23 @@ impl State {
         }
     }
 
+    /// Whether another flight is being read, so that what is changed now would be lost with this one; and says it.
+    pub(crate) fn changes_would_be_lost(&mut self) -> bool {
+        let is_lost = self.is_opening() && self.reads_other;
+        if is_lost {
+            let text = "a flight is being opened; change this one when it is there, or cancel that";
+            // Once, and not in each frame of a drag.
+            if self.log.last().is_none_or(|last| last.text != text) {
+                self.say(Severity::Note, text);
+            }
+        }
+        is_lost
+    }
+
     /// Undo, redo, and what they go over.
     fn edit_settings(&mut self, change: impl FnOnce(&mut History<FlightSettings>)) {
-        if self.is_opening() && self.reads_other {
-            // What is changed now would go with this flight, or its reading would stop the other's.
-            let text = "another flight is being opened; change settings when it is there";
-            self.say(Severity::Note, text);
+        // The reading of this one would stop the other's, too.
+        if self.changes_would_be_lost() {
             return;
         }
         let Some(open) = &mut self.open else {

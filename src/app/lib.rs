@@ -100,6 +100,10 @@ pub struct App {
     title: String,
     /// Whether the keys were the window's in the frame before.
     was_focused: bool,
+    /// The commands of shortcuts that were pressed in a field, until what was typed there counts.
+    from_field: Vec<Command>,
+    /// That field, which is entered again behind them.
+    left_field: Option<egui::Id>,
     times: FrameTimes,
 }
 
@@ -132,6 +136,8 @@ impl App {
             photo_panel: PhotoPanel::default(),
             title: String::new(),
             was_focused: true,
+            from_field: Vec::new(),
+            left_field: None,
             times,
         }
     }
@@ -219,8 +225,19 @@ impl eframe::App for App {
         self.times.begin();
         self.hold_back_closing(context);
         self.keep_keys_from_behind(context);
-        for command in actions::pressed(&self.state, context) {
-            self.state.apply(command);
+        let pressed = actions::pressed(&self.state, context);
+        if !pressed.is_empty()
+            && context.text_edit_focused()
+            && let Some(field) = context.memory(|memory| memory.focused())
+        {
+            // The field is left, and says in this frame what was typed into it: that comes first.
+            context.memory_mut(|memory| memory.surrender_focus(field));
+            self.from_field = pressed;
+            self.left_field = Some(field);
+        } else {
+            for command in pressed {
+                self.state.apply(command);
+            }
         }
         let dropped = context.input(|input| input.raw.dropped_files.clone());
         if !dropped.is_empty() {
@@ -245,6 +262,7 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let mut commands = Vec::new();
+        let page_before = state_of_keys(&self.state);
         let (state, out) = (&self.state, &mut commands);
         egui::Panel::top("menu").show(ui, |ui| panels::menu_bar(state, ui, out));
         if state.open.is_some() || state.page == Page::SizeDistributions {
@@ -366,9 +384,28 @@ impl eframe::App for App {
         drop_hint(state, ui.ctx());
         panels::focus_ring(ui.ctx());
         self.times.end(Phase::Panels);
-        for command in commands {
-            self.state.apply(command);
-            ui.ctx().request_repaint();
+        if !commands.is_empty() || !self.from_field.is_empty() {
+            // What was typed into a field counts before the click that left it does, and before the shortcut.
+            commands.sort_by_key(Command::comes_last);
+            commands.append(&mut self.from_field);
+            // The mouse moves in many a frame, and settings are copied where somebody sets any.
+            let sets = commands
+                .iter()
+                .any(|command| matches!(command, Command::Set(_)));
+            let open = self.state.open.as_ref().filter(|_| sets);
+            self.state.settings_of_frame = open.map(|open| open.settings());
+            for command in commands {
+                self.state.apply(command);
+                ui.ctx().request_repaint();
+            }
+            self.state.settings_of_frame = None;
+        }
+        // What is typed on is for the field, where that is still shown and nothing asks.
+        let page = state_of_keys(&self.state);
+        if let Some(field) = self.left_field.take()
+            && page == page_before
+        {
+            ui.ctx().memory_mut(|memory| memory.request_focus(field));
         }
         self.times.end(Phase::Commands);
     }
@@ -376,6 +413,16 @@ impl eframe::App for App {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, PREFERENCES, &self.state.preferences);
     }
+}
+
+/// Where keys go: which page of which flight, and what is asked.
+fn state_of_keys(state: &State) -> (Page, Option<u64>, bool) {
+    let flight = state.open.as_ref().map(|open| open.first_number);
+    (
+        state.page,
+        flight,
+        state.asking.is_some() || state.held_back.is_some(),
+    )
 }
 
 /// What lies over the viewport: layers, views, the slider of a look through a camera, the last error.

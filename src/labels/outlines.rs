@@ -1,6 +1,7 @@
 //! Outlines of a photo's fragments, and all that was done to them by hand.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::{Change, FINES, LabelImage, NOT_ROCK};
 
@@ -75,7 +76,8 @@ impl Outlines {
 /// Outlines with every change that was made, so that each can be undone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Editing {
-    now: Outlines,
+    /// A job may look at them while she edits on: then they are copied before they change.
+    now: Arc<Outlines>,
     done: Vec<Change>,
     undone: Vec<Change>,
 }
@@ -84,7 +86,7 @@ impl Editing {
     /// Begins with these.
     pub fn new(outlines: Outlines) -> Self {
         Self {
-            now: outlines,
+            now: Arc::new(outlines),
             done: Vec::new(),
             undone: Vec::new(),
         }
@@ -95,6 +97,11 @@ impl Editing {
         &self.now
     }
 
+    /// The same, to be looked at while they are changed: label images of many photos are gigabytes.
+    pub fn shared(&self) -> Arc<Outlines> {
+        self.now.clone()
+    }
+
     /// How many changes made them what they are.
     pub fn changes(&self) -> usize {
         self.done.len()
@@ -103,7 +110,7 @@ impl Editing {
     /// Makes a change of what is now; what was undone is forgotten. What changes nothing is no step.
     pub fn make(&mut self, change: Change) {
         if !change.is_nothing() {
-            self.now.change(&change, false);
+            Arc::make_mut(&mut self.now).change(&change, false);
             self.done.push(change);
             self.undone.clear();
         }
@@ -114,7 +121,7 @@ impl Editing {
         let Some(change) = self.done.pop() else {
             return false;
         };
-        self.now.change(&change, true);
+        Arc::make_mut(&mut self.now).change(&change, true);
         self.undone.push(change);
         true
     }
@@ -124,7 +131,7 @@ impl Editing {
         let Some(change) = self.undone.pop() else {
             return false;
         };
-        self.now.change(&change, false);
+        Arc::make_mut(&mut self.now).change(&change, false);
         self.done.push(change);
         true
     }

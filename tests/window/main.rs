@@ -58,6 +58,7 @@ mod rough_ground;
 mod scale_object;
 mod season;
 mod settings;
+mod side_by_side;
 mod size_distributions;
 mod survey;
 mod viewport;

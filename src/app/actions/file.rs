@@ -140,8 +140,7 @@ actions! {
         hover: "Read the flight's files anew, as they are now",
         shortcut: keys(Modifiers::NONE, Key::F5),
         command: |state| {
-            let path = state.open.as_ref()?.files.path.clone();
-            Some(Command::Open(path))
+            with_flight(state, Command::ReadAgain)
         },
     }
     SAVE {

@@ -204,7 +204,13 @@ pub fn pressed(state: &State, context: &egui::Context) -> Vec<Command> {
         // An open menu is closed by it first.
         let closes = shortcut.logical_key == Key::Escape && egui::Popup::is_any_open(context);
         let belongs_elsewhere = taken || of_focus.contains(&shortcut.logical_key);
-        if closes || (belongs_elsewhere && !shortcut.modifiers.command) || (editing && undoes) {
+        // In a field it takes a word away, in many a program.
+        let erases = editing && action.shortcut == file::CLOSE.shortcut;
+        if closes
+            || (belongs_elsewhere && !shortcut.modifiers.command)
+            || (editing && undoes)
+            || erases
+        {
             continue;
         }
         let Some(command) = (action.command)(state) else {

@@ -71,6 +71,8 @@ pub enum Choice {
 pub enum Command {
     /// Opens a flight.
     Open(PathBuf),
+    /// Reads the files of the flight on the screen anew.
+    ReadAgain,
     /// Takes what was dropped: size distributions, or something of a flight.
     Drop(Vec<PathBuf>),
     /// Opens what was dropped: a flight, perhaps with its surface and photos; a surface alone is for
@@ -235,4 +237,32 @@ pub enum Command {
     TakeAnswer,
     /// Tells what went wrong outside of the state: in the graphics device.
     Report(String),
+}
+
+impl Command {
+    /// Whether it is done behind the others of a frame: it writes or leaves what a field may just have changed, or takes a place
+    /// out of a list that others of them name by its number.
+    pub(crate) fn comes_last(&self) -> bool {
+        matches!(
+            self,
+            Self::Save
+                | Self::SaveAs(_)
+                | Self::SaveFirst
+                | Self::Export(_)
+                | Self::ReadAgain
+                | Self::Open(_)
+                | Self::OpenSample
+                | Self::Close
+                | Self::Quit
+                | Self::Page(_)
+                | Self::Control(
+                    ControlStep::Remove(_) | ControlStep::RemoveBar(_) | ControlStep::Apply
+                )
+                | Self::Beside(BesideStep::Remove(_))
+                | Self::Distributions(DistributionCommand::Remove(_))
+                | Self::Pick(PickStep::Remove(_) | PickStep::RemoveAll)
+                | Self::Plan(PlanStep::SaveMission(_) | PlanStep::SaveTable(_))
+                | Self::Fragments(FragmentStep::Export(_))
+        )
+    }
 }

@@ -142,12 +142,19 @@ impl State {
             found.map_err(|error| error.fault.to_string())
         };
         let by = open.control_list().clone();
-        self.start(Task::CONTROL, work, |state, found| match found {
-            Ok(found) => state.take_control(found, by),
-            Err(message) => {
-                if let Some(open) = &mut state.open {
-                    open.control.applied = Some(Applied::Failed(message));
-                }
+        let fitted = (open.first_number, place_of(&open.settings()));
+        self.start(Task::CONTROL, work, move |state, found| {
+            let Some(open) = &mut state.open else {
+                return;
+            };
+            if (open.first_number, place_of(&open.settings())) != fitted {
+                let text = "the flight was brought elsewhere while its control points were fitted: apply them again";
+                state.say(Severity::Warning, text);
+                return;
+            }
+            match found {
+                Ok(found) => state.take_control(found, by),
+                Err(message) => open.control.applied = Some(Applied::Failed(message)),
             }
         });
     }
@@ -183,6 +190,12 @@ impl State {
         }
         self.set_settings(settings);
     }
+}
+
+/// What a fit begins from: where the flight stands, and in which unit.
+fn place_of(settings: &FlightSettings) -> (Option<Placed>, Option<LengthUnit>) {
+    let unit = settings.unit_known.then_some(settings.unit);
+    (settings.placed.clone(), unit)
 }
 
 /// The list with another one's points behind its own; a point of a name that is there already takes its place.

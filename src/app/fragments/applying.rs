@@ -18,6 +18,9 @@ const WIDEST: f64 = 400.0;
 
 impl State {
     pub(crate) fn fragment_step(&mut self, step: FragmentStep) {
+        if step.changes_outlines() && self.changes_would_be_lost() {
+            return;
+        }
         match step {
             FragmentStep::Outline => self.outline_photo(),
             FragmentStep::OutlineAll => self.outline_all(),
@@ -59,6 +62,9 @@ impl State {
 
     /// Undo and redo of the selected photo's outlines.
     pub(crate) fn undo_fragments(&mut self, redo: bool) {
+        if self.changes_would_be_lost() {
+            return;
+        }
         let Some(open) = &mut self.open else {
             return;
         };

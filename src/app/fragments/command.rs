@@ -64,6 +64,37 @@ pub enum FragmentStep {
     Export(Destination),
 }
 
+impl FragmentStep {
+    /// Whether outlines become others by it.
+    pub(super) fn changes_outlines(&self) -> bool {
+        match self {
+            Self::Outline
+            | Self::OutlineAll
+            | Self::Masks { .. }
+            | Self::Stroke(_)
+            | Self::Click(_)
+            | Self::Finish
+            | Self::Delete
+            | Self::NoRock
+            | Self::IsRight
+            | Self::Coarser(_)
+            | Self::Finer(_) => true,
+            Self::Engine(_)
+            | Self::Network(_)
+            | Self::Tool(_)
+            | Self::Brush(_)
+            | Self::RemoveCorner
+            | Self::Select(_)
+            | Self::Show(_)
+            | Self::NextDoubtful
+            | Self::TakeDistribution
+            | Self::MeasureAll
+            | Self::TakeAllDistributions
+            | Self::Export(_) => false,
+        }
+    }
+}
+
 /// What the mouse does in the photo.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FragmentTool {

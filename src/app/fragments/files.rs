@@ -1,6 +1,7 @@
 //! Outlines saved beside flight.toml, `fragments/NAME.png` with `fragments/NAME_outlines.json`, and read from there.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::PhotoOutlines;
 use crate::delineation::saved::{SavedOutlines, lens_of};
@@ -8,11 +9,12 @@ use crate::exports;
 use crate::files::{self, FileError, Inputs, Kind};
 use crate::formats;
 use crate::jobs::Progress;
-use crate::labels::LabelImage;
+use crate::labels::Outlines;
 use crate::open_flight::OpenFlight;
-use crate::opening::{OutlinesRead, outline_files, read_outlines, saved_outlines};
+use crate::opening::{outline_files, read_outlines, saved_outlines};
 use crate::state::{Severity, State};
 use crate::tasks::Task;
+use crate::tasks::stood::Stood;
 
 impl Task {
     /// Reading saved outlines.
@@ -27,7 +29,7 @@ pub(crate) struct OutlinesToSave {
     pub revision: u64,
     pub(crate) files: [PathBuf; 2],
     /// `None` where what the files hold is undone.
-    labels: Option<LabelImage>,
+    outlines: Option<Arc<Outlines>>,
     saved: SavedOutlines,
     /// Where the photo is.
     photo_file: Option<PathBuf>,
@@ -59,7 +61,7 @@ impl OpenFlight {
                 photo: *photo,
                 revision: of.revision,
                 files: outline_files(path, stems.get(*photo)?),
-                labels: (!of.is_nothing()).then(|| of.now().labels().clone()),
+                outlines: (!of.is_nothing()).then(|| of.editing.shared()),
                 photo_file: self.photo_file(*photo),
                 saved: SavedOutlines {
                     photo: self.name(*photo).to_owned(),
@@ -110,7 +112,7 @@ impl OutlinesToSave {
     /// Why they may not be written, or what the system says.
     pub(crate) fn write(&self, read: &Inputs) -> Result<(), FileError> {
         let [picture, json] = &self.files;
-        let Some(labels) = &self.labels else {
+        let Some(outlines) = &self.outlines else {
             for path in &self.files {
                 let own = read.clone().without(path);
                 if files::standing(path, Kind::Result, &own) == files::Standing::Ours {
@@ -120,7 +122,8 @@ impl OutlinesToSave {
             }
             return Ok(());
         };
-        let bytes = exports::labels_png(labels).map_err(|fault| FileError::new(picture, fault))?;
+        let bytes = exports::labels_png(outlines.labels())
+            .map_err(|fault| FileError::new(picture, fault))?;
         let photo = self.photo_file.as_deref();
         let saved = SavedOutlines {
             picture: photo.and_then(|file| files::sha256_of_file(file, || false).ok()),
@@ -167,62 +170,65 @@ impl State {
         let Some(photo) = open.selected else {
             return;
         };
-        let fragments = &mut open.fragments;
-        if fragments.sought.contains(&photo) || fragments.of(photo).is_some() {
+        let fragments = &open.fragments;
+        let is_read = self.work.is_running(Task::READ_OUTLINES) && fragments.reading == Some(photo);
+        if is_read || fragments.sought.contains(&photo) || fragments.of(photo).is_some() {
             return;
         }
-        fragments.sought.push(photo);
         let Some(own) = open.files.origin.flight_file() else {
             return;
         };
         let stems = exports::photo_file_stems(open.flight());
         let stem = stems.get(photo);
-        for path in stem.into_iter().flat_map(|stem| outline_files(own, stem)) {
-            open.files.stood.note(&path);
-        }
         let files = stem.and_then(|stem| saved_outlines(own, stem));
         let Some(files) = files else {
+            for path in stem.into_iter().flat_map(|stem| outline_files(own, stem)) {
+                open.files.stood.note(&path);
+            }
+            open.fragments.sought.push(photo);
             return;
         };
+        // As long as they are not read they are somebody's: saving asks before it writes over them. A job that the next photo
+        // ends leaves it at that, and they are sought once more.
+        for path in &files {
+            open.files.stood.note_not_taken(path);
+        }
+        open.fragments.reading = Some(photo);
         let (flight, number) = (open.flight().clone(), open.number);
-        let (photo_file, not_taken) = (open.photo_file(photo), files.clone());
+        let photo_file = open.photo_file(photo);
         let work = move |_: &Progress| {
+            let mut stood = Stood::default();
+            files.iter().for_each(|path| stood.note(path));
             let posed = &flight.parts().photos[photo];
-            read_outlines(
+            let read = read_outlines(
                 &files,
                 &posed.name,
                 flight.camera(posed),
                 photo_file.as_deref(),
-            )
+            );
+            (read, stood)
         };
-        self.start(Task::READ_OUTLINES, work, move |state, read| match read {
-            Ok(read) => state.take_read_outlines(number, photo, read),
-            Err(error) => {
-                if let Some(open) = &mut state.open
-                    && open.number == number
-                {
-                    // They are somebody's: saving asks before it writes over them.
-                    for path in &not_taken {
-                        open.files.stood.note_not_taken(path);
+        self.start(Task::READ_OUTLINES, work, move |state, (read, stood)| {
+            let open = state.open.as_mut();
+            let Some(open) = open.filter(|open| open.number == number) else {
+                return;
+            };
+            open.fragments.sought.push(photo);
+            match read {
+                // What was outlined meanwhile stays.
+                Ok(_) if open.fragments.of(photo).is_some() => {}
+                Ok(read) => {
+                    open.files.stood.take(stood);
+                    let of = PhotoOutlines::saved(read.outlines, read.by);
+                    open.fragments.photos.insert(photo, of);
+                    for note in &read.notes {
+                        state.say(Severity::Warning, note);
                     }
                 }
-                state.say(Severity::Error, &error.to_string());
+                Err(error) => state.say(Severity::Error, &error.to_string()),
             }
+            state.measure_fragments();
         });
-    }
-
-    fn take_read_outlines(&mut self, number: u64, photo: usize, read: OutlinesRead) {
-        for note in &read.notes {
-            self.say(Severity::Warning, note);
-        }
-        if let Some(open) = &mut self.open
-            && open.number == number
-        {
-            let of = PhotoOutlines::saved(read.outlines, read.by);
-            // What was outlined meanwhile stays.
-            open.fragments.photos.entry(photo).or_insert(of);
-        }
-        self.measure_fragments();
     }
 
     /// These revisions are in files now.

@@ -44,7 +44,7 @@ impl State {
             return;
         }
         let (number, revision) = (open.number, of.revision);
-        let mut labels = of.now().labels().clone();
+        let outlines = of.editing.shared();
         let (habits, spread) = (of.by().habits, of.by().spread);
         let field = open.fragments.field.as_ref().filter(|(of, _)| *of == photo);
         let field = field.map(|(_, field)| field.clone());
@@ -54,6 +54,9 @@ impl State {
         let doubts = Doubts::of(habits, scale);
         let work = move |progress: &Progress| {
             progress.stage("measuring");
+            let mut labels = outlines.labels().clone();
+            // What she changes meanwhile need not be copied for this.
+            drop(outlines);
             let posed = &flight.parts().photos[photo];
             let field: Arc<ScaleField> = match field {
                 Some(field) => field,

@@ -208,8 +208,10 @@ pub struct Fragments {
     regions: Option<(usize, Arc<Regions>)>,
     /// The scale of every pixel of the photo that was measured last.
     field: Option<(usize, Arc<ScaleField>)>,
-    /// Photos whose files were looked for.
+    /// Photos whose files were looked for, and read where there are any.
     sought: Vec<usize>,
+    /// The photo whose files were read last, or are.
+    reading: Option<usize>,
     /// The photo that is outlined now, while one is, and those whose turn comes after it.
     outlining: Option<usize>,
     waiting: VecDeque<usize>,
@@ -258,6 +260,30 @@ impl Fragments {
             0.0 => USUAL_BRUSH,
             brush => brush,
         }
+    }
+
+    /// The same of a flight whose photos have other places now; and the photos that are in it no more, with outlines that no file
+    /// has.
+    pub(crate) fn moved(mut self, now_at: impl Fn(usize) -> Option<usize>) -> (Self, Vec<usize>) {
+        let mut gone = Vec::new();
+        let photos = std::mem::take(&mut self.photos);
+        for (photo, of) in photos {
+            match now_at(photo) {
+                Some(now) => {
+                    self.photos.insert(now, of);
+                }
+                None if of.is_changed() => gone.push(photo),
+                None => {}
+            }
+        }
+        self.regions = self
+            .regions
+            .and_then(|(photo, of)| Some((now_at(photo)?, of)));
+        self.sought = self.sought.into_iter().filter_map(&now_at).collect();
+        self.reading = None;
+        self.outlining = self.outlining.and_then(&now_at);
+        self.waiting = self.waiting.into_iter().filter_map(&now_at).collect();
+        (self, gone)
     }
 
     /// The same of the flight that was read again: fields of scales may be others, and so all measures.

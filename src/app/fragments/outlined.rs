@@ -12,7 +12,7 @@ use crate::exports::{self, FragmentSizes, MassWay, MeasuredPhoto};
 use crate::fault::{Fault, by_cause};
 use crate::flight::{Flight, FlightSettings, LookedUp, Photo};
 use crate::jobs::Progress;
-use crate::labels::LabelImage;
+use crate::labels::{self, LabelImage};
 use crate::open_flight::OpenFlight;
 use crate::opening::{read_outlines, saved_outlines};
 use crate::size_distributions::MadeOf;
@@ -21,7 +21,7 @@ use crate::tasks::photos::read_photo;
 /// Where a photo's outlines are.
 enum Outlines {
     /// On the screen: as they are now, and what outlined them first.
-    Now(LabelImage, Outliner),
+    Now(Arc<labels::Outlines>, Outliner),
     /// In files beside flight.toml.
     Saved([PathBuf; 2]),
 }
@@ -102,7 +102,7 @@ impl Outlined {
         camera: &Camera,
     ) -> Result<(LabelImage, Outliner, Vec<String>), String> {
         let (mut labels, by, mut notes) = match &self.outlines {
-            Outlines::Now(labels, by) => (labels.clone(), by.clone(), Vec::new()),
+            Outlines::Now(now, by) => (now.labels().clone(), by.clone(), Vec::new()),
             Outlines::Saved(files) => {
                 let read = read_outlines(files, &self.name, camera, self.file.as_deref())
                     .map_err(|error| error.to_string())?;
@@ -163,7 +163,7 @@ impl OpenFlight {
             .filter(|(index, _)| photos.contains(index))
             .filter_map(|(index, stem)| {
                 let outlines = match self.fragments.of(index) {
-                    Some(of) => Outlines::Now(of.now().labels().clone(), of.by().clone()),
+                    Some(of) => Outlines::Now(of.editing.shared(), of.by().clone()),
                     None => Outlines::Saved(saved_outlines(own?, &stem)?),
                 };
                 let file = self.files.photo_files.get(index).cloned();

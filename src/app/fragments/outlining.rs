@@ -80,9 +80,8 @@ impl State {
         let file = open.files.photo_files.get(photo).cloned();
         let path = file.unwrap_or_default().path;
         let (flight, settings) = (open.flight().clone(), open.settings());
-        let number = open.number;
         let name = open.name(photo).to_owned();
-        let said = name.clone();
+        let (said, of) = (name.clone(), (open.first_number, name.clone()));
         open.fragments.outlining = Some(photo);
         let camera = flight.camera(&flight.parts().photos[photo]);
         let mut by = Outliner {
@@ -112,7 +111,7 @@ impl State {
                         spread,
                     } = found;
                     by.spread = spread;
-                    state.take_outlines(number, photo, outlines, Some(regions), by);
+                    state.take_outlines(&of, outlines, Some(regions), by);
                 }
                 Err(message) => state.say(Severity::Error, &message),
             }
@@ -130,7 +129,8 @@ impl State {
             return;
         };
         open.fragments.masks_refused = None;
-        let (flight, settings, number) = (open.flight().clone(), open.settings(), open.number);
+        let (flight, settings) = (open.flight().clone(), open.settings());
+        let of_photo = (open.first_number, open.name(photo).to_owned());
         let files = open.files.photo_files.clone();
         let work = move |_: &Progress| -> Result<(LabelImage, Vec<String>), String> {
             let others = OutlinesOfOthers::open(&path, of).map_err(|error| error.to_string())?;
@@ -154,7 +154,7 @@ impl State {
                     engine: MASKS.to_owned(),
                     ..Outliner::default()
                 };
-                state.take_outlines(number, photo, outlines, None, by);
+                state.take_outlines(&of_photo, outlines, None, by);
                 if state.asking == Some(Asking::Masks) {
                     state.asking = None;
                 }
@@ -168,10 +168,10 @@ impl State {
         });
     }
 
+    /// Takes outlines of the photo of that name in the flight whose first reading had that number: it may have been read again since.
     fn take_outlines(
         &mut self,
-        number: u64,
-        photo: usize,
+        (first_number, name): &(u64, String),
         outlines: Outlines,
         regions: Option<Regions>,
         by: Outliner,
@@ -179,9 +179,22 @@ impl State {
         let Some(open) = &mut self.open else {
             return;
         };
-        if open.number != number {
+        if open.first_number != *first_number {
             return;
         }
+        let parts = open.flight().parts();
+        let size = (outlines.labels().width, outlines.labels().height);
+        let is_meant = |photo: &crate::flight::Photo| {
+            let camera = open.flight().camera(photo);
+            photo.name == *name && size == (camera.width as usize, camera.height as usize)
+        };
+        let Some(photo) = parts.photos.iter().position(is_meant) else {
+            let text = format!(
+                "photo '{name}' has changed since: outline it, or read its outlines, again"
+            );
+            self.say(Severity::Warning, &text);
+            return;
+        };
         let fragments = &mut open.fragments;
         if let Some(regions) = regions.filter(|_| open.selected == Some(photo)) {
             fragments.regions = Some((photo, Arc::new(regions)));

@@ -116,6 +116,7 @@ impl OpenFlight {
             // The points were on the other photo.
             self.objects.tracing = None;
             self.reviewing = Default::default();
+            self.leave_fragments();
         }
         // Looking through a camera goes on through the next one, all of it.
         if self.looking.through.is_some() && self.looking.through != self.selected {

@@ -145,6 +145,8 @@ pub struct Pointer {
 pub struct OpenFlight {
     /// Counted, so that results for an earlier flight are told from those for this one.
     pub number: u64,
+    /// The number of its first reading: the same flight read again has another `number`.
+    pub first_number: u64,
     /// The flight with its scales, doubts and verdicts: with the settings of now, once they are
     /// computed.
     pub review: Review,
@@ -234,6 +236,7 @@ impl OpenFlight {
         let plan = computed.plan.as_deref().cloned();
         let mut open = Self {
             number,
+            first_number: number,
             review,
             history: History::new(computed.clone()),
             computed,
@@ -304,6 +307,11 @@ impl OpenFlight {
         self.history.now().clone()
     }
 
+    /// The same to look at: a frame that copied the decisions of thousands of photos would be late.
+    pub fn settings_now(&self) -> &FlightSettings {
+        self.history.now()
+    }
+
     /// The same as saving writes them: with the flight plan, which has an undo of its own.
     pub fn settings_to_save(&self) -> FlightSettings {
         FlightSettings {
@@ -324,8 +332,16 @@ impl OpenFlight {
         if self.files.origin.is_surface_in_no_flight() {
             return self.planning.is_lost();
         }
-        self.settings_to_save() != self.files.saved
-            || self.files.origin.has_other_files()
+        self.is_edited() || self.files.origin.has_other_files()
+    }
+
+    /// Whether settings, plan or outlines are not saved.
+    pub fn is_edited(&self) -> bool {
+        let saved = &self.files.saved;
+        let changed = self.settings_now().changed_since(saved);
+        // The plan has an undo of its own, beside the settings'.
+        changed.iter().any(|what| *what != FlightSettings::PLAN)
+            || self.planning.to_save() != saved.plan.as_deref()
             || self.fragments.is_changed()
     }
 
@@ -478,7 +494,7 @@ impl OpenFlight {
     /// The elevation of the ground: as set, or where a ray needed it, or the surface's middle.
     pub fn ground(&self) -> f64 {
         let outcomes = self.review.outcomes();
-        drawn_ground(self.settings().ground, outcomes, &self.extent.bulk)
+        drawn_ground(self.settings_now().ground, outcomes, &self.extent.bulk)
     }
 }
 

@@ -80,7 +80,21 @@ pub(super) fn hinted_field(
     hint: &str,
     width: f32,
 ) -> Option<String> {
-    let id = ui.scope_id().with(label);
+    field_of(ui, label, label, hover, text, hint, width)
+}
+
+/// The same that is told by `key` where its label changes with what is typed elsewhere: else a field that is entered would be another
+/// one in the next frame, and letters would be tools.
+pub(super) fn field_of(
+    ui: &mut egui::Ui,
+    key: impl std::hash::Hash + std::fmt::Debug,
+    label: &str,
+    hover: &str,
+    text: &str,
+    hint: &str,
+    width: f32,
+) -> Option<String> {
+    let id = ui.scope_id().with(key);
     let mut typed: String = ui
         .data(|data| data.get_temp(id))
         .unwrap_or_else(|| text.to_owned());

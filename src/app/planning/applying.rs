@@ -17,6 +17,9 @@ const USUAL_HEIGHT: f64 = 20.0;
 
 impl State {
     pub(crate) fn plan_step(&mut self, step: PlanStep) {
+        if step.changes_what_is_asked() && self.changes_would_be_lost() {
+            return;
+        }
         match step {
             PlanStep::Make => {
                 if let Some(open) = &mut self.open {
@@ -74,6 +77,9 @@ impl State {
 
     /// Undo and redo of what is asked of the plan.
     pub(crate) fn undo_plan(&mut self, step: impl FnOnce(&mut History<AskedPlan>) -> bool) {
+        if self.changes_would_be_lost() {
+            return;
+        }
         if let Some(open) = &mut self.open
             && let Some(asked) = &mut open.planning.asked
         {

@@ -22,21 +22,32 @@ impl State {
         };
         open.begin_planning();
         let crs = open.files.crs.clone();
+        // What is typed counts at once, so that saving behind it has it; a file may lie on a drive that sleeps.
+        if text.contains(';') && !text.contains(['/', '\\']) {
+            let read = read(tool, &text, crs.as_deref());
+            return self.take_areas(tool, read);
+        }
         let work = move |_: &Progress| read(tool, &text, crs.as_deref());
-        self.start(Task::READ_AREAS, work, move |state, read| match read {
+        self.start(Task::READ_AREAS, work, move |state, read| {
+            state.take_areas(tool, read);
+        });
+    }
+
+    fn take_areas(&mut self, tool: PlanTool, read: Result<(Vec<Polygon>, Vec<String>), String>) {
+        match read {
             Ok((areas, said)) => {
                 for sentence in said {
-                    state.say(Severity::Warning, &sentence);
+                    self.say(Severity::Warning, &sentence);
                 }
-                if let Some(open) = &mut state.open
+                if let Some(open) = &mut self.open
                     && let Some(now) = open.planning.now().cloned()
                 {
                     let asked = with(now, tool, areas);
-                    state.plan_step(super::PlanStep::Ask(Box::new(asked)));
+                    self.plan_step(super::PlanStep::Ask(Box::new(asked)));
                 }
             }
-            Err(why) => state.say(Severity::Error, &why),
-        });
+            Err(why) => self.say(Severity::Error, &why),
+        }
     }
 }
 

@@ -47,6 +47,31 @@ pub enum PlanStep {
     SaveFlown(Destination),
 }
 
+impl PlanStep {
+    /// Whether it asks for another plan.
+    pub(super) fn changes_what_is_asked(&self) -> bool {
+        match self {
+            Self::Ask(_)
+            | Self::Finish
+            | Self::Drag(..)
+            | Self::Drop
+            | Self::Leave
+            | Self::ReadAreas(..) => true,
+            Self::Make
+            | Self::Tool(_)
+            | Self::RemoveLast
+            | Self::Select(_)
+            | Self::SelectBy(_)
+            | Self::ToggleThrough
+            | Self::SaveMission(_)
+            | Self::SaveTable(_)
+            | Self::Compare(_)
+            | Self::CloseFlown
+            | Self::SaveFlown(_) => false,
+        }
+    }
+}
+
 /// What a click in the viewport does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum PlanTool {

@@ -18,6 +18,8 @@ pub struct MadePlan {
     pub(super) camera: Option<Camera>,
     /// The pile on it, where that was looked for.
     pub(super) pile: Option<Polygon>,
+    /// At which height it lies, and all else, in words.
+    pub pile_heights: Option<String>,
     /// Without what was changed by hand.
     pub(super) base: Arc<Plan>,
     /// The plan.

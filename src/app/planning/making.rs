@@ -101,6 +101,11 @@ fn made(
             Some(plan::pile(&over.surface, progress)?)
         }
     };
+    let pile_heights = match (known.and_then(|known| known.pile_heights.clone()), &pile) {
+        (None, Some(pile)) => plan::heights_in_and_about(&over.surface, pile)
+            .map(|heights| plan::heights_in_words(heights, over.unit.symbol())),
+        (known, _) => known,
+    };
     let base = match before {
         Some(before) => before.base.clone(),
         None => {
@@ -181,6 +186,7 @@ fn made(
         surface: over.surface.clone(),
         camera: over.camera.clone(),
         pile,
+        pile_heights,
         base,
         plan,
         ways,

@@ -141,17 +141,21 @@ impl Planning {
     /// Takes that the flight's lengths count in another unit, so many of the one before: what was asked stays as long as it is, and the
     /// plan that was made is none of it.
     pub(crate) fn take_unit(&mut self, before: f64) {
-        let Some(now) = self.now().map(|now| now.in_unit_of(before)) else {
-            return;
-        };
         let in_unit =
             |asked: &Option<AskedPlan>| asked.as_ref().map(|asked| asked.in_unit_of(before));
+        let now = self.now().map(|now| now.in_unit_of(before));
         *self = Self {
             usual: in_unit(&self.usual),
             saved: in_unit(&self.saved),
-            asked: Some(History::new(now)),
+            asked: now.map(History::new),
             ..Self::default()
         };
+    }
+
+    /// Takes that the surface is another one: what is asked for stays, and the plan that was made is none of it.
+    pub(crate) fn over_another_surface(&mut self) {
+        let mut before = std::mem::take(self);
+        self.keep_from(&mut before);
     }
 
     /// Why nothing can be made of what is asked for now.

@@ -25,15 +25,18 @@ impl Task {
     pub const SEASON: Self = Self::new("Season").writing();
 }
 
+/// A path that is still typed is another one in a moment, and "/" is a walk over the whole disk.
+const TYPED: Duration = Duration::from_millis(300);
+
 impl State {
     /// Does a step of going through a season.
     pub(crate) fn step_season(&mut self, step: SeasonStep) {
         match step {
             SeasonStep::Ask => {
                 self.ask(Some(Asking::Season));
-                // Flights may have come.
-                if !self.work.is_running(Task::SEASON) && self.season.ended.is_none() {
-                    self.look_at_season();
+                // Flights may have come, also behind a run that has ended.
+                if !self.work.is_running(Task::SEASON) {
+                    self.look_at_season(Duration::ZERO);
                 }
             }
             SeasonStep::Fill(form) => self.fill_season(form),
@@ -59,16 +62,18 @@ impl State {
             return;
         }
         let is_other = self.season.form.season != form.season;
+        let is_typed = is_other || self.season.form.to != form.to;
         self.season.form = form;
         if is_other {
             // Another season says its own.
             self.season.form.steps = None;
         }
         self.season.ended = None;
-        self.look_at_season();
+        self.look_at_season(if is_typed { TYPED } else { Duration::ZERO });
     }
 
-    fn look_at_season(&mut self) {
+    /// Looks which flights there are, once nothing has been typed for so long.
+    fn look_at_season(&mut self, wait: Duration) {
         self.work.cancel(Task::LOOK_AT_SEASON);
         self.season.found = None;
         self.season.states.clear();
@@ -79,7 +84,13 @@ impl State {
             return;
         };
         let unit = self.preferences.unit();
-        let work = move |_: &Progress| look(&path, &form, unit);
+        let work = move |progress: &Progress| {
+            std::thread::sleep(wait);
+            match progress.is_cancelled() {
+                true => Err("given up".to_owned()),
+                false => look(&path, &form, unit),
+            }
+        };
         self.start(Task::LOOK_AT_SEASON, work, |state, found| {
             state.season.found = Some(found.map(|(found, states)| {
                 state.season.states = states;

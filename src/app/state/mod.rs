@@ -10,6 +10,7 @@ use std::path::PathBuf;
 
 use crate::command::{Asking, Command, PictureRequest, Tab};
 use crate::fault::one_line;
+use crate::flight::FlightSettings;
 use crate::formats::Candidate;
 use crate::fragments::Network;
 use crate::from_photos::FromPhotos;
@@ -73,6 +74,8 @@ pub enum Named {
     Added,
     /// A cloud, to be looked at by itself.
     Alone,
+    /// The flight on the screen once more, with the surface and the photos that were added to it.
+    Again,
 }
 
 /// What the flight on the screen is left for.
@@ -141,6 +144,8 @@ pub struct State {
     pub cloud: Option<PathBuf>,
     /// Whether the flight that is being read is another one than that on the screen.
     pub reads_other: bool,
+    /// The settings that the panels of this frame were drawn with, while their commands are applied.
+    pub(crate) settings_of_frame: Option<FlightSettings>,
     /// A first look at the surface that is being read.
     pub preview: Option<OpeningPreview>,
     /// How many flights were opened.
@@ -176,6 +181,7 @@ impl State {
             choices: Vec::new(),
             cloud: None,
             reads_other: false,
+            settings_of_frame: None,
             preview: None,
             opened: 0,
             picture: None,

@@ -173,6 +173,20 @@ impl State {
             self.say(Severity::Warning, &warning);
         }
         if other_surface {
+            // What was planned and measured over the surface of before says nothing of this one.
+            if let Some(open) = &mut self.open {
+                open.planning.over_another_surface();
+                open.fragments = std::mem::take(&mut open.fragments).of_another_surface();
+            }
+            for task in [
+                Task::PLAN,
+                Task::FLOWN,
+                Task::MEASURE_FRAGMENTS,
+                Task::MEASURE_ALL,
+            ] {
+                self.work.cancel(task);
+            }
+            self.measure_fragments();
             self.start_geometry();
             self.start_picker();
         }

@@ -1,5 +1,6 @@
 //! Opening a flight.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 
 use super::stood::changed_in_words;
@@ -25,11 +26,14 @@ impl Task {
 impl State {
     /// Reads what was named and computes its scales. A surface alone is for the flight that could not
     /// be opened last, else for the one on the screen, unless it is to be looked at [`Named::Alone`]; photos
-    /// alone are, too, if they are [`Named::Added`], else a flight of their own.
+    /// alone are, too, if they are [`Named::Added`], else a flight of their own. [`Named::Again`] is the flight on the
+    /// screen, with what was added to it, whatever `paths` says.
     pub fn start_opening(&mut self, paths: Vec<PathBuf>, how: Named) {
         let on_screen = self.open.as_ref();
         let base = on_screen.map(|open| (open.files.path.clone(), open.files.options.clone()));
         let base = self.tried.clone().or(base);
+        let again = on_screen.filter(|_| how == Named::Again);
+        let again = again.map(|open| (open.files.path.clone(), open.files.options.clone()));
         let base = base.filter(|_| how != Named::Alone);
         let added = how == Named::Added;
         self.notice = None;
@@ -48,7 +52,8 @@ impl State {
                 // Where nobody wants it any more, nobody misses it.
                 let _ = steps.offer(take, progress);
             };
-            named(&paths, base, added)
+            again
+                .map_or_else(|| named(&paths, base, added), Ok)
                 .and_then(|(path, options)| load(path, options, None, Some(&on_sample), progress))
         };
         self.start(Task::OPEN, work, Self::take_opened);
@@ -130,14 +135,15 @@ impl State {
         let [read, computed] = loaded.took;
         self.note_step("Opening the flight", &name, read);
         self.note_step("Computing scales", &name, computed);
-        let count = loaded.outcomes.len();
         let again = match (loaded.again_for, self.open.take()) {
             // The same flight with other surface options: what the engineer did stays, unless its
             // files have other photos by now.
             (Some(number), Some(before)) if number == before.number => {
-                // Scales of the flight before would come over those of this one.
-                self.work.cancel(Task::SCALES);
-                Some(before).filter(|before| before.review.count() == count)
+                // Scales of the flight before would come over those of this one, and a plan over its surface.
+                for task in [Task::SCALES, Task::PLAN, Task::CONTROL] {
+                    self.work.cancel(task);
+                }
+                Some(before)
             }
             // She has gone on to another flight meanwhile.
             (Some(_), other) => {
@@ -170,7 +176,9 @@ impl State {
         let limits = self.preferences.limits;
         let mut open = Box::new(OpenFlight::new(self.opened, loaded, &limits));
         if let Some(before) = again {
-            open.keep_from(before);
+            for gone in open.keep_from(before) {
+                self.say(Severity::Warning, &gone);
+            }
             open.take_stated();
             open.take_decisions();
         }
@@ -183,6 +191,8 @@ impl State {
         self.load_preview();
         self.load_full_photo();
         self.start_thumbnails();
+        // The page may be shown already: what files have of its outlines is read.
+        self.begin_fragments();
         let Some(open) = &self.open else {
             return;
         };
@@ -257,8 +267,22 @@ impl State {
 }
 
 impl OpenFlight {
-    /// Takes over what the engineer did from the flight before it was read again.
-    fn keep_from(&mut self, mut before: Box<Self>) {
+    /// Takes over what the engineer did from the flight before it was read again, photo by photo by their names: its files may
+    /// have others by now, or in another order. Returns what is gone, a sentence each.
+    fn keep_from(&mut self, mut before: Box<Self>) -> Vec<String> {
+        let names = |open: &Self| -> Vec<String> {
+            let photos = open.flight().parts().photos.iter();
+            photos.map(|photo| photo.name.clone()).collect()
+        };
+        let (names_before, names_now) = (names(&before), names(self));
+        let now_at: HashMap<&str, usize> = names_now.iter().map(String::as_str).zip(0..).collect();
+        let now_at = |photo: usize| {
+            let name = names_before.get(photo)?;
+            now_at.get(name.as_str()).copied()
+        };
+        let is_same_order = names_before == names_now;
+        let mut gone_with_place = Vec::new();
+        self.first_number = before.first_number;
         self.files.saved = before.files.saved.clone();
         // Saved elsewhere while the file was read.
         self.files.path.clone_from(&before.files.path);
@@ -273,6 +297,10 @@ impl OpenFlight {
         // Brought to another place by control points, what was clicked and looked at is elsewhere.
         if self.computed.placed == before.computed.placed {
             self.pointer.measure = before.pointer.measure;
+            self.pointer.drawn = before.pointer.drawn.take();
+            self.pointer.put_away = std::mem::take(&mut before.pointer.put_away);
+            self.pointer.second = before.pointer.second.take();
+            std::mem::swap(&mut self.beside, &mut before.beside);
             std::mem::swap(&mut self.pointer.picked, &mut before.pointer.picked);
             self.clip = before.clip;
             std::mem::swap(&mut self.clip_history, &mut before.clip_history);
@@ -280,23 +308,43 @@ impl OpenFlight {
             self.planning.keep_from(&mut before.planning);
         } else {
             self.looking.size = before.looking.size;
+            let picked = !before.pointer.picked.history.now().is_empty();
+            let all = [
+                (!before.beside.is_empty(), "clouds beside the surface"),
+                (
+                    before.pointer.second.is_some(),
+                    "the second surface of volumes",
+                ),
+                (picked, "picked points"),
+            ];
+            let were_there = all.into_iter().filter(|(is_there, _)| *is_there);
+            gone_with_place.extend(were_there.map(|(_, what)| {
+                format!("{what} were of where the flight was before, and are gone: add them anew")
+            }));
         }
         std::mem::swap(&mut self.control, &mut before.control);
-        self.fragments = std::mem::take(&mut before.fragments).of_another_surface();
+        let fragments = std::mem::take(&mut before.fragments).of_another_surface();
+        let (fragments, gone) = fragments.moved(now_at);
+        self.fragments = fragments;
         self.photo_view.placing = before.photo_view.placing;
         self.photo_view.image = before.photo_view.image;
-        std::mem::swap(&mut self.beside, &mut before.beside);
         for beside in &mut self.beside {
             // The local frame may be another one.
             beside.uploaded = None;
         }
-        self.pointer.second = before.pointer.second.take();
-        self.objects.tracing = before.objects.tracing.take();
+        self.objects.tracing = before.objects.tracing.take().filter(|_| is_same_order);
         self.objects.sizes = before.objects.sizes;
         std::mem::swap(&mut self.georeferencing, &mut before.georeferencing);
         std::mem::swap(&mut self.history, &mut before.history);
-        self.selected = before.selected;
+        self.looking.through = self.looking.through.and_then(now_at);
+        self.selected = (before.selected).and_then(|photo| now_at(photo).or(self.selected));
+        let gone = gone.into_iter().filter_map(|photo| names_before.get(photo));
+        let gone = gone.map(|photo| {
+            format!("photo '{photo}' is not in the flight any more: its outlines, which no file has, are gone")
+        });
+        let gone = gone.chain(gone_with_place).collect();
         std::mem::swap(&mut self.table.order, &mut before.table.order);
         before.let_go();
+        gone
     }
 }

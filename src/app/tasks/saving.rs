@@ -13,7 +13,7 @@ use crate::state::{Severity, State};
 
 impl Task {
     /// Writing flight.toml.
-    pub const SAVE: Self = Self::new("Saving").writing();
+    pub const SAVE: Self = Self::new("Saving").writing().to_the_end();
 }
 
 impl State {
@@ -48,7 +48,10 @@ impl State {
 
     /// Writes flight.toml at a place; asks before another file is replaced.
     pub(crate) fn save_as(&mut self, to: Destination) {
-        self.asking = None;
+        // Another small window stays.
+        if self.asking == Some(Asking::SaveAs) {
+            self.asking = None;
+        }
         if self.open.is_none() || self.is_busy(Task::SAVE) {
             return;
         }

@@ -26,6 +26,11 @@ impl Stood {
         self.0.insert(path.to_owned(), stamp(path));
     }
 
+    /// Files as they stood when they were noted there.
+    pub(crate) fn take(&mut self, noted: Self) {
+        self.0.extend(noted.0);
+    }
+
     /// A file that is there, and of which nothing was taken: whatever it holds is no earlier state of what is on the screen.
     pub(crate) fn note_not_taken(&mut self, path: &Path) {
         self.0.insert(path.to_owned(), None);

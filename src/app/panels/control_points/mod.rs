@@ -163,7 +163,7 @@ fn residual<'a>(open: &'a OpenFlight, name: &str) -> Option<(&'a Georeferenced, 
     let Some(Applied::Placed(found, placed, by)) = &open.control.applied else {
         return None;
     };
-    if *placed != open.settings().placed || **by != *open.control_list() {
+    if *placed != open.settings_now().placed || **by != *open.control_list() {
         return None;
     }
     let position = found

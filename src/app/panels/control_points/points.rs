@@ -10,7 +10,7 @@ use crate::control::{ControlPoint, POOR_PX};
 use crate::control_points::ControlStep;
 use crate::files::last_segment;
 use crate::open_flight::OpenFlight;
-use crate::panels::field::{hinted_field, text_field};
+use crate::panels::field::{field_of, text_field};
 
 /// Photos that are offered at most.
 const MOST_OFFERED: usize = 24;
@@ -70,7 +70,8 @@ fn one(
         let hover = "East, north and height, typed or pasted from a table; empty for an end of a scale bar alone";
         // Its own margin and the button behind it; else the panel would grow.
         let width = (ui.available_width() - 52.0).max(60.0);
-        if let Some(typed) = hinted_field(ui, &label, hover, &text, "x y z, not surveyed", width) {
+        let (key, hint) = (("surveyed place", place), "x y z, not surveyed");
+        if let Some(typed) = field_of(ui, key, &label, hover, &text, hint, width) {
             commands.push(match read(&typed) {
                 Ok(position) => Command::Control(ControlStep::Survey(place, position)),
                 Err(why) => Command::Report(format!("{name}: {why}")),

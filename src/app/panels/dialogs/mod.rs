@@ -79,6 +79,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::About => "About fragscale",
         };
         let mut stays = true;
+        let had_list = egui::Popup::is_any_open(context);
         egui::Window::new(title)
             .open(&mut stays)
             .collapsible(false)
@@ -127,7 +128,8 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::About => about(ui),
                 }
             });
-        let escape = context.input(|input| input.key_pressed(egui::Key::Escape));
+        // A list that is open is closed by it first.
+        let escape = !had_list && context.input(|input| input.key_pressed(egui::Key::Escape));
         if !stays || escape {
             commands.push(Command::Ask(None));
         }
@@ -267,7 +269,9 @@ fn replace(command: &Command, question: &str, ui: &mut egui::Ui, commands: &mut 
     ui.label(question);
     ui.add_space(8.0);
     ui.horizontal(|ui| {
-        if ui.button("Replace it").clicked() {
+        // It stands where another question's button stood: the second half of a double click there is no answer here.
+        let replaces = ui.button("Replace it");
+        if replaces.clicked() && !replaces.double_clicked() && !replaces.triple_clicked() {
             commands.push(Command::Discard);
         }
         if ui.button(format!("Keep the {what}")).clicked() {

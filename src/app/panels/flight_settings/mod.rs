@@ -20,8 +20,8 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
         return;
     };
     let now = open.settings();
-    let mut changed_to = None;
-    let mut set = |settings: FlightSettings| changed_to = Some(settings);
+    let mut changes = Vec::new();
+    let mut set = |settings: FlightSettings| changes.push(Command::Set(settings));
     let parts = open.flight().parts();
     let heading = egui::TextStyle::Heading;
     names::styled(ui, &parts.name, heading, egui::RichText::strong);
@@ -210,7 +210,7 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
             ..now.clone()
         });
     }
-    commands.extend(changed_to.map(Command::Set));
+    commands.append(&mut changes);
     ui.add_space(8.0);
     stated_errors(state, &now, ui, commands);
 }

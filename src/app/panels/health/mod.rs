@@ -103,6 +103,7 @@ fn name(item: HealthItem) -> &'static str {
     match item {
         HealthItem::Unit => "Unit",
         HealthItem::CoordinateSystem => "Coordinate system",
+        HealthItem::Poses => "Poses",
         HealthItem::UpAxis => "Up axis",
         HealthItem::Colours => "Colours",
         HealthItem::Distance => "Distance",

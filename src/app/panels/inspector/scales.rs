@@ -259,10 +259,7 @@ fn sources(uncertainty: &Uncertainty, pair: ScalePair) -> String {
     let counted: Vec<String> = parts
         .filter_map(|(source, part)| Some(format!("{} {}", source.as_str(), percent(part?))))
         .collect();
-    let not_counted: Vec<&str> = uncertainty
-        .not_counted(pair)
-        .map(ErrorSource::as_str)
-        .collect();
+    let not_counted = uncertainty.not_counted_in_words(pair);
     let mut text = String::new();
     if !counted.is_empty() {
         text = format!("Standard errors: {}", counted.join(", "));

@@ -42,10 +42,15 @@ pub(super) fn places(
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
         ui.label("Area:");
-        ui.label(match &asked.area {
+        let of_area = ui.label(match &asked.area {
             None => "the pile that was found".to_owned(),
             Some(corners) => format!("drawn, {} corners", corners.len()),
         });
+        // A terrace behind a crest may be taken for one.
+        let made = planning.made.as_ref().filter(|_| asked.area.is_none());
+        if let Some(heights) = made.and_then(|made| made.pile_heights.as_deref()) {
+            of_area.on_hover_text(format!("It lies {heights}"));
+        }
         let hover = "Click the corners of what is to be photographed; its corners can be dragged";
         tool(PlanTool::Area, "Draw area", hover, ui, commands);
         load("Load area…", PlanTool::Area, ui, commands);
