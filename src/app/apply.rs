@@ -178,12 +178,10 @@ impl State {
                 self.say(Severity::Note, &with_what("done again", &changed));
             }
             Command::Set(after) => {
-                let open = self.open.as_ref();
-                let now = open.map_or_else(|| after.clone(), |open| open.settings());
                 // Made of those of the frame's beginning, which another command may have changed since.
-                let settings = match &self.settings_of_frame {
-                    Some(before) => now.with_changes(before, after),
-                    None => after,
+                let settings = match (&self.settings_of_frame, &self.open) {
+                    (Some(before), Some(open)) => open.settings().with_changes(before, after),
+                    _ => after,
                 };
                 self.set_settings(settings);
             }

@@ -102,8 +102,8 @@ pub struct App {
     was_focused: bool,
     /// The commands of shortcuts that were pressed in a field, until what was typed there counts.
     from_field: Vec<Command>,
-    /// That field, which is entered again behind them.
-    left_field: Option<egui::Id>,
+    /// That field, which is entered again behind them, and where keys went then.
+    left_field: Option<(egui::Id, Keys)>,
     times: FrameTimes,
 }
 
@@ -233,7 +233,7 @@ impl eframe::App for App {
             // The field is left, and says in this frame what was typed into it: that comes first.
             context.memory_mut(|memory| memory.surrender_focus(field));
             self.from_field = pressed;
-            self.left_field = Some(field);
+            self.left_field = Some((field, keys_of(&self.state)));
         } else {
             for command in pressed {
                 self.state.apply(command);
@@ -262,7 +262,6 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let mut commands = Vec::new();
-        let page_before = state_of_keys(&self.state);
         let (state, out) = (&self.state, &mut commands);
         egui::Panel::top("menu").show(ui, |ui| panels::menu_bar(state, ui, out));
         if state.open.is_some() || state.page == Page::SizeDistributions {
@@ -401,9 +400,8 @@ impl eframe::App for App {
             self.state.settings_of_frame = None;
         }
         // What is typed on is for the field, where that is still shown and nothing asks.
-        let page = state_of_keys(&self.state);
-        if let Some(field) = self.left_field.take()
-            && page == page_before
+        if let Some((field, before)) = self.left_field.take()
+            && keys_of(&self.state) == before
         {
             ui.ctx().memory_mut(|memory| memory.request_focus(field));
         }
@@ -415,14 +413,13 @@ impl eframe::App for App {
     }
 }
 
-/// Where keys go: which page of which flight, and what is asked.
-fn state_of_keys(state: &State) -> (Page, Option<u64>, bool) {
+/// Where keys go: to which page of which flight, and whether something is asked.
+type Keys = (Page, Option<u64>, bool);
+
+fn keys_of(state: &State) -> Keys {
     let flight = state.open.as_ref().map(|open| open.first_number);
-    (
-        state.page,
-        flight,
-        state.asking.is_some() || state.held_back.is_some(),
-    )
+    let asks = state.asking.is_some() || state.held_back.is_some();
+    (state.page, flight, asks)
 }
 
 /// What lies over the viewport: layers, views, the slider of a look through a camera, the last error.

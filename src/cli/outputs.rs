@@ -1,6 +1,7 @@
 //! Where the answers of commands go: standard output or a file, which is written by one rule
 //! (`files::overwrite`), looked at before the work begins and again when it is written.
 
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
@@ -44,9 +45,7 @@ impl OutputArguments {
         &self,
         inputs: impl IntoIterator<Item = P>,
     ) -> Result<Outputs<'_>, String> {
-        let file = self.output.as_deref();
-        let ending = file.and_then(|file| Some((file, file.extension()?.to_string_lossy())));
-        match ending {
+        match self.ending() {
             Some((file, ending)) if is_another(&ending) || is_numbers(&ending) => {
                 let what = format!("text for people is written here, and nothing as .{ending}");
                 let fault = Fault::new(what, "end the name in .txt");
@@ -54,6 +53,12 @@ impl OutputArguments {
             }
             _ => self.outputs(inputs),
         }
+    }
+
+    /// The file, and how its name ends.
+    fn ending(&self) -> Option<(&Path, Cow<'_, str>)> {
+        let file = self.output.as_deref()?;
+        Some((file, file.extension()?.to_string_lossy()))
     }
 }
 
@@ -85,9 +90,7 @@ impl AnswerArguments {
         &self,
         inputs: impl IntoIterator<Item = P>,
     ) -> Result<Outputs<'_>, String> {
-        let file = self.output.output.as_deref();
-        let of_name = file.and_then(|file| Some((file, file.extension()?.to_string_lossy())));
-        match of_name {
+        match self.output.ending() {
             Some((file, ending)) if self.format.is_none() && is_another(&ending) => {
                 let fault = Fault::new(
                     format!("nothing is written as .{ending} here"),

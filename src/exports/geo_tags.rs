@@ -54,24 +54,19 @@ pub(crate) fn geo_tags(picture: &OnMap<'_>) -> GeoTags {
     let mut keys = Keys::default();
     let map = projected(picture.crs);
     let wkt = picture.crs.filter(|crs| crs.contains('['));
-    match (map.as_ref().and_then(code), wkt.filter(|_| map.is_some())) {
-        (Some(code), _) => {
-            keys.short(MODEL_TYPE, PROJECTED);
-            keys.short(RASTER_TYPE, PIXEL_IS_AREA);
-            keys.short(PROJECTED_CRS, code);
-        }
+    let code = map.as_ref().and_then(code);
+    keys.short(MODEL_TYPE, code.map_or(USER_DEFINED, |_| PROJECTED));
+    keys.short(RASTER_TYPE, PIXEL_IS_AREA);
+    match (code, wkt.filter(|_| map.is_some())) {
+        (Some(code), _) => keys.short(PROJECTED_CRS, code),
         (None, Some(wkt)) => {
             // The words by which GDAL and ArcGIS know that WKT follows; GDAL looks for them only where the model is none that keys
             // describe (rasterio 1.4.4 reads ESRI's WKT, GDAL's and WKT 2 of it, with their units).
-            keys.short(MODEL_TYPE, USER_DEFINED);
-            keys.short(RASTER_TYPE, PIXEL_IS_AREA);
             keys.short(PROJECTED_CRS, USER_DEFINED);
             keys.text(PROJECTED_CITATION, &format!("ESRI PE String = {wkt}"));
             keys.unit(picture.unit);
         }
         (None, None) => {
-            keys.short(MODEL_TYPE, USER_DEFINED);
-            keys.short(RASTER_TYPE, PIXEL_IS_AREA);
             keys.text(CITATION, &crs_in_words(picture.crs));
             keys.unit(picture.unit);
         }
@@ -88,7 +83,7 @@ pub(crate) fn geo_tags(picture: &OnMap<'_>) -> GeoTags {
 
 /// The EPSG code of the map, without that of its heights, where a key can hold it.
 fn code(crs: &Crs) -> Option<u16> {
-    let code = crs.name().strip_prefix("EPSG:")?.split('+').next()?;
+    let code = crs.map_name().strip_prefix("EPSG:")?;
     let code: u16 = code.parse().ok()?;
     // OGC 19-008r4, 7.6.2: codes of EPSG lie there.
     (1024..USER_DEFINED).contains(&code).then_some(code)

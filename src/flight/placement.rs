@@ -44,33 +44,30 @@ impl Flight {
             extent: bounds.size().length(),
             ..Placement::default()
         };
-        let centers = || parts.photos.iter().map(|photo| photo.pose.center);
         let away = |center: DVec3| (center - center.clamp(bounds.min, bounds.max)).length();
-        let distances = centers().map(away).enumerate();
-        placement.far = distances
-            .filter(|(_, away)| *away > FAR * placement.extent)
-            .collect();
-        // A surface that cannot be met says so when scales are asked of it.
         let is_mesh = !parts.surface.is_cloud();
         let rays = match is_mesh {
             true => LOOKS as usize * LOOKS as usize + 2,
             false => 2,
         };
-        let Ok(mut caster) = parts.surface.caster_for(rays * parts.photos.len()) else {
-            return placement;
-        };
-        let is_far: Vec<usize> = placement.far.iter().map(|(photo, _)| *photo).collect();
+        // A surface that cannot be met says so when scales are asked of it.
+        let mut caster = parts.surface.caster_for(rays * parts.photos.len()).ok();
         for (index, photo) in parts.photos.iter().enumerate() {
-            // One that strayed says nothing of the others.
-            if is_far.binary_search(&index).is_ok() {
+            let origin = photo.pose.center;
+            let distance = away(origin);
+            if distance > FAR * placement.extent {
+                // One that strayed says nothing of the others.
+                placement.far.push((index, distance));
                 continue;
             }
-            let origin = photo.pose.center;
+            let Some(caster) = &mut caster else {
+                continue;
+            };
             let mut meets = |direction| caster.cast(&Ray { origin, direction }).is_some();
             // Under a quarry's overhang the surface is above and below.
             if meets(DVec3::Z) && !meets(DVec3::NEG_Z) {
                 placement.under.push(index);
-            } else if is_mesh && self.sees_from_behind(photo, &mut caster) {
+            } else if is_mesh && self.sees_from_behind(photo, caster) {
                 placement.behind.push(index);
             }
         }

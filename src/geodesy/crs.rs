@@ -222,6 +222,11 @@ impl Crs {
             .unwrap_or("not said")
     }
 
+    /// Its name without that of its heights: "EPSG:32632" of "EPSG:32632+5773".
+    pub fn map_name(&self) -> &str {
+        self.name().split('+').next().unwrap_or_default()
+    }
+
     /// Whether it says what its heights count from.
     pub fn states_heights(&self) -> bool {
         self.definition.heights.name.is_some()

@@ -182,6 +182,27 @@ fn a_bridged_hole_is_told() {
         "{found} of {hole}"
     );
     assert_eq!(bridged(0.0), 0.0);
+    // Of points of chance triangles are of many lengths, and only ten times the median one bridges: not four cells, which is told of
+    // a grid (below).
+    let by_chance = |radius: f64| {
+        let mut random = SplitMix(7);
+        let places = (0..60).flat_map(|x| (0..60).map(move |y| (f64::from(x), f64::from(y))));
+        let places = places.map(|(x, y)| (x + random.unit() - 0.5, y + random.unit() - 0.5));
+        let places: Vec<(f64, f64)> = places.collect();
+        let points = places
+            .into_iter()
+            .filter(|(x, y)| (x - 30.0).hypot(y - 30.0) >= radius);
+        let surface = cloud(points.map(|(x, y)| DVec3::new(x, y, 0.0)));
+        let polygon = rectangle([5.0, 5.0], [55.0, 55.0]);
+        let found = volume(&surface, &polygon, Base::Height(ORIGIN.z));
+        found.unwrap().bridged
+    };
+    let found = by_chance(15.0);
+    assert!(
+        found > 0.6 * hole && found < 1.02 * hole,
+        "{found} of {hole}"
+    );
+    assert_eq!([by_chance(2.5), by_chance(0.0)], [0.0; 2]);
     // Strips of points 1 apart with 36 between them: a line is on two triangles there.
     let places = (0..5).chain(40..45);
     let points = places.flat_map(|x| (0..5).map(move |y| DVec3::new(x.into(), y.into(), 0.0)));

@@ -7,6 +7,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
+use tempfile::TempDir;
 
 use crate::common::fragscale;
 
@@ -335,17 +336,23 @@ fn a_broken_flight_fails_alone() {
     assert!(word().is_err() && root.join("out/good/scales.csv").is_file());
 }
 
+/// A season of one flight, with sizes held against a sieve, which says so besides: where it was done, what was said, and the status.
+fn sized(more: &str) -> (TempDir, String, i32) {
+    let root = tempfile::tempdir().expect("a folder");
+    with_photos(&root.path().join("a"), 1);
+    let season = format!("format = 1\nto = \"out\"\nsteps = [\"delineate\", \"psd\"]\n{more}");
+    fs::write(root.path().join("SEASON.toml"), season).expect("written");
+    let output = batch(root.path(), &["SEASON.toml"]);
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    (root, text, status(&output))
+}
+
 /// What a step lacks is said before the others are done.
 #[test]
 fn a_missing_reference_is_said_first() {
-    let root = tempfile::tempdir().expect("a folder");
+    let (root, text, status) = sized("[[flight]]\npath = \"a\"\nreference = \"nosieve.csv\"\n");
     let root = root.path();
-    with_photos(&root.join("a"), 1);
-    let season = "format = 1\nto = \"out\"\nsteps = [\"delineate\", \"psd\"]\n[[flight]]\npath = \"a\"\nreference = \"nosieve.csv\"\n";
-    fs::write(root.join("SEASON.toml"), season).expect("written");
-    let output = batch(root, &["SEASON.toml"]);
-    let text = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(status(&output), 3, "{text}");
+    assert_eq!(status, 3, "{text}");
     assert!(
         text.contains("nosieve.csv: there is no such file"),
         "{text}"
@@ -356,14 +363,10 @@ fn a_missing_reference_is_said_first() {
 /// Of many blasts one was sieved: the others are done all the same, and it is said that nothing holds their sizes.
 #[test]
 fn a_blast_that_nobody_sieved_is_done() {
-    let root = tempfile::tempdir().expect("a folder");
+    let (root, text, status) =
+        sized("[delineate]\nengine = \"classical\"\n[[flight]]\npath = \"a\"\n");
     let root = root.path();
-    with_photos(&root.join("a"), 1);
-    let season = "format = 1\nto = \"out\"\nsteps = [\"delineate\", \"psd\"]\n[delineate]\nengine = \"classical\"\n[[flight]]\npath = \"a\"\n";
-    fs::write(root.join("SEASON.toml"), season).expect("written");
-    let output = batch(root, &["SEASON.toml"]);
-    let text = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(status(&output), 0, "{text}");
+    assert_eq!(status, 0, "{text}");
     let report = fs::read_to_string(root.join("out/season.html")).expect("a report");
     assert!(
         report.contains("psd: no reference is named for it"),

@@ -142,12 +142,12 @@ impl State {
             found.map_err(|error| error.fault.to_string())
         };
         let by = open.control_list().clone();
-        let fitted = (open.first_number, place_of(&open.settings()));
+        let fitted = (open.first_number, place_of(open.settings_now()));
         self.start(Task::CONTROL, work, move |state, found| {
             let Some(open) = &mut state.open else {
                 return;
             };
-            if (open.first_number, place_of(&open.settings())) != fitted {
+            if (open.first_number, place_of(open.settings_now())) != fitted {
                 let text = "the flight was brought elsewhere while its control points were fitted: apply them again";
                 state.say(Severity::Warning, text);
                 return;

@@ -9,6 +9,7 @@ use crate::command::Asking;
 use crate::delineation::{self, Delineated, Outliner, Regions};
 use crate::exports;
 use crate::fault::Fault;
+use crate::flight::Photo;
 use crate::jobs::Progress;
 use crate::labels::{LabelImage, Outlines};
 use crate::opening::{OutlinesOfOthers, saved_outlines};
@@ -184,7 +185,7 @@ impl State {
         }
         let parts = open.flight().parts();
         let size = (outlines.labels().width, outlines.labels().height);
-        let is_meant = |photo: &crate::flight::Photo| {
+        let is_meant = |photo: &Photo| {
             let camera = open.flight().camera(photo);
             photo.name == *name && size == (camera.width as usize, camera.height as usize)
         };

@@ -30,10 +30,9 @@ impl State {
     /// screen, with what was added to it, whatever `paths` says.
     pub fn start_opening(&mut self, paths: Vec<PathBuf>, how: Named) {
         let on_screen = self.open.as_ref();
-        let base = on_screen.map(|open| (open.files.path.clone(), open.files.options.clone()));
-        let base = self.tried.clone().or(base);
-        let again = on_screen.filter(|_| how == Named::Again);
-        let again = again.map(|open| (open.files.path.clone(), open.files.options.clone()));
+        let on_screen = on_screen.map(|open| (open.files.path.clone(), open.files.options.clone()));
+        let again = on_screen.clone().filter(|_| how == Named::Again);
+        let base = self.tried.clone().or(on_screen);
         let base = base.filter(|_| how != Named::Alone);
         let added = how == Named::Added;
         self.notice = None;
@@ -136,8 +135,7 @@ impl State {
         self.note_step("Opening the flight", &name, read);
         self.note_step("Computing scales", &name, computed);
         let again = match (loaded.again_for, self.open.take()) {
-            // The same flight with other surface options: what the engineer did stays, unless its
-            // files have other photos by now.
+            // The same flight with other surface options: what the engineer did stays.
             (Some(number), Some(before)) if number == before.number => {
                 // Scales of the flight before would come over those of this one, and a plan over its surface.
                 for task in [Task::SCALES, Task::PLAN, Task::CONTROL] {

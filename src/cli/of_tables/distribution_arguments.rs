@@ -102,6 +102,30 @@ pub(super) struct DistributionArguments {
     weight: Option<String>,
 }
 
+/// That a method is in another folder's file of the same name, too: a program's, and of another blast as like as not.
+fn merged_with_another(
+    file: &Path,
+    set: &DistributionSet,
+    read: &[(&Path, String, DistributionSet)],
+) -> Option<String> {
+    let methods = |set: &DistributionSet| -> BTreeSet<String> {
+        let of_curves = set.curves.iter().map(|curve| curve.labels.method.clone());
+        of_curves.collect()
+    };
+    let of_now = methods(set);
+    let alike = read
+        .iter()
+        .filter(|(other, ..)| other.file_name() == file.file_name());
+    let (other, method) = alike.into_iter().find_map(|(_, name, of)| {
+        let shared = methods(of).intersection(&of_now).next().cloned();
+        Some((name, shared?))
+    })?;
+    Some(format!(
+        "'{method}' is in {other}, too: both are taken for one method and merged; to compare them call them apart (A={other} B={})",
+        file.display()
+    ))
+}
+
 impl DistributionArguments {
     /// The curves of all files in the unit of the first, with what was mended; `merging` is by what they are to be merged.
     pub(super) fn read(
@@ -133,24 +157,8 @@ impl DistributionArguments {
                 .map_err(|fault| FileError::new(file, fault).to_string())?;
             found.extend(renamed);
             let name = file.display().to_string();
-            // A program's file of the same name in another folder is of another blast as like as not.
-            let methods = |set: &DistributionSet| -> BTreeSet<String> {
-                set.curves
-                    .iter()
-                    .map(|curve| curve.labels.method.clone())
-                    .collect()
-            };
-            let of_now = methods(&set);
-            let earlier = read.iter().find_map(|(other, name, of)| {
-                let is_alike = named.is_none() && other.file_name() == file.file_name();
-                let shared = methods(of).intersection(&of_now).next().cloned();
-                Some((name, shared?)).filter(|_| is_alike)
-            });
-            if let Some((other, method)) = earlier {
-                found.push(format!(
-                    "'{method}' is in {other}, too: both are taken for one method and merged; to compare them call them apart \
-                     (A={other} B={name})"
-                ));
+            if named.is_none() {
+                found.extend(merged_with_another(file, &set, &read));
             }
             warnings.extend(found.iter().map(|warning| format!("{name}: {warning}")));
             read.push((file, name, set));

@@ -48,11 +48,9 @@ pub(super) fn turn_back(mesh: &mut Cloud, source: &Source) -> Option<(String, Op
     if !source.may_turn_meshes || mesh.triangles.is_empty() {
         return None;
     }
-    let cells = Cells::of(&mesh.points)?;
-    let near = [false, true].map(|turned| cells.share_near(turned, source));
-    let (why, doubt) = match near {
-        [Some(as_it_is), Some(turned)] if as_it_is > turned + NEARER => return None,
-        [Some(as_it_is), Some(turned)] if turned > as_it_is + NEARER => {
+    let (why, doubt) = match shares_near(mesh, source) {
+        Some([as_it_is, turned]) if as_it_is > turned + NEARER => return None,
+        Some([as_it_is, turned]) if turned > as_it_is + NEARER => {
             ("the scene's points lie on it then", None)
         }
         _ => {
@@ -76,53 +74,31 @@ fn turned(point: DVec3) -> DVec3 {
     DVec3::new(point.x, -point.y, -point.z)
 }
 
-/// The cells of space that vertices of a mesh lie in.
-struct Cells {
-    /// World units.
-    side: f64,
-    with_vertices: HashSet<IVec3>,
-}
-
-impl Cells {
-    fn of(vertices: &[DVec3]) -> Option<Self> {
-        let side = Bounds::of(vertices)?.size().length() / CELLS;
-        let cells = vertices.iter().map(|vertex| Self::at(*vertex, side));
-        Some(Self {
-            side,
-            with_vertices: cells.collect(),
-        })
+/// The share of the scene's points that lie near a vertex of the mesh as it is, and turned; `None` of too few points.
+fn shares_near(mesh: &Cloud, source: &Source) -> Option<[f64; 2]> {
+    let points = &source.reconstruction_cloud.cloud.points;
+    if points.len() < LEAST_POINTS {
+        return None;
     }
-
-    fn at(point: DVec3, side: f64) -> IVec3 {
-        (point / side).floor().as_ivec3()
-    }
-
-    /// The share of the scene's points that lie near a vertex of the mesh as it is, or turned; `None` of too few points.
-    fn share_near(&self, is_turned: bool, source: &Source) -> Option<f64> {
-        let points = &source.reconstruction_cloud.cloud.points;
-        if points.len() < LEAST_POINTS {
-            return None;
-        }
-        let is_near = |point: &&DVec3| {
-            // Turned once more it is where it was.
-            let at = Self::at(if is_turned { turned(**point) } else { **point }, self.side);
-            let beside = -1..=1;
-            beside.clone().any(|x| {
-                beside.clone().any(|y| {
-                    let mut across = beside.clone();
-                    across.any(|z| {
-                        self.with_vertices
-                            .contains(&at.saturating_add(IVec3::new(x, y, z)))
-                    })
-                })
+    let side = Bounds::of(&mesh.points)?.size().length() / CELLS;
+    let cell = |point: DVec3| (point / side).floor().as_ivec3();
+    let with_vertices: HashSet<IVec3> = mesh.points.iter().map(|vertex| cell(*vertex)).collect();
+    let is_near = |point: DVec3| {
+        let (at, beside) = (cell(point), -1..=1);
+        beside.clone().any(|x| {
+            beside.clone().any(|y| {
+                let mut across = beside.clone();
+                across.any(|z| with_vertices.contains(&at.saturating_add(IVec3::new(x, y, z))))
             })
-        };
-        let tried = points
-            .iter()
-            .step_by(points.len().div_ceil(MOST_POINTS).max(1));
-        let count = tried.len();
-        Some(tried.filter(is_near).count() as f64 / count as f64)
-    }
+        })
+    };
+    let tried = points.iter().step_by(points.len().div_ceil(MOST_POINTS));
+    let share = |of: &dyn Fn(DVec3) -> DVec3| {
+        let near = tried.clone().filter(|point| is_near(of(**point)));
+        near.count() as f64 / tried.len() as f64
+    };
+    // Turned once more a point is where it was, so points are turned in place of all vertices.
+    Some([share(&|point| point), share(&turned)])
 }
 
 /// Of what the photos see of the mesh as it is, or turned, as large as they see it and as if nothing hid anything, the share that

@@ -201,16 +201,14 @@ impl WorldFrame {
 
     /// Whether the other is the same map without a word of heights, and heights here count in another unit than x and y.
     pub(crate) fn is_same_map_with_heights(&self, other: &Self) -> bool {
-        let map = |frame: &Self| {
-            frame
-                .crs()
-                .and_then(|name| name.split('+').next())
-                .map(str::to_owned)
-        };
-        self.heights_factor() != 1.0
-            && other.heights_factor() == 1.0
-            && matches!((self, other), (Self::Named(_), Self::Named(_)))
-            && map(self) == map(other)
+        match (self, other) {
+            (Self::Named(own), Self::Named(other)) => {
+                own.heights_factor() != 1.0
+                    && other.heights_factor() == 1.0
+                    && own.map_name() == other.map_name()
+            }
+            _ => false,
+        }
     }
 
     /// Whether it says what its heights count from.

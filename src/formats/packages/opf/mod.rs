@@ -43,8 +43,7 @@ use crate::camera::{Brown, Camera, Distortion, Pose};
 use crate::cameras::polynomial_fisheye;
 use crate::fault::Fault;
 use crate::files::{FileError, read_bytes};
-use crate::geodesy::Crs;
-use crate::geodesy::Geographic;
+use crate::geodesy::{Crs, Geographic};
 use crate::packages::reconstruction::{
     ImageUnit, MeasuredPosition, Origin, PosedPhoto, Project, Reconstruction, Sizes,
 };

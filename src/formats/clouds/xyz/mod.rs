@@ -18,6 +18,9 @@
 //! - A line with a single whole number right behind the names, or first of all, is a count and is
 //!   passed over.
 
+mod columns;
+mod decimal_commas;
+
 use std::io::BufRead;
 
 use glam::DVec3;
@@ -27,7 +30,10 @@ use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::text::fields::shown;
 use crate::text::text_lines::TextLines;
-use crate::units::LengthUnit;
+use columns::{Columns, unit_of};
+use decimal_commas::{
+    are_decimal_commas, between_blanks_are_decimal_commas, decimal_commas, decimal_commas_in_quotes,
+};
 
 /// Reads points of a text of `size` bytes (for the progress).
 ///
@@ -184,69 +190,6 @@ const NO_HEIGHT: [f64; 3] = [-9999.0, -32_767.0, -32_768.0];
 /// So many lines tell whether commas are decimal signs.
 const LOOKED_AT: u32 = 1000;
 
-/// Whether the commas of a line separate the places behind a decimal sign from those before it: twice as many numbers as there
-/// are names, or six whole ones of which every other begins with a zero that a whole number would not.
-fn are_decimal_commas(line: &str, names: Option<usize>) -> bool {
-    let fields: Vec<&str> = line.split(',').map(str::trim).collect();
-    let is_whole = |field: &&str| {
-        let digits = field.strip_prefix('-').unwrap_or(field);
-        !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
-    };
-    if !fields.iter().all(is_whole) {
-        return false;
-    }
-    if let Some(names) = names {
-        return fields.len() == 2 * names;
-    }
-    let behind = fields.iter().skip(1).step_by(2);
-    fields.len() == 6
-        && behind
-            .into_iter()
-            .any(|part| part.len() > 1 && part.starts_with('0'))
-}
-
-/// A line between commas that has commas in quotes, too, as a spreadsheet writes decimal commas: with points in their
-/// place, and without the quotes. `None` of other lines.
-fn decimal_commas_in_quotes(line: &str) -> Option<String> {
-    let mut is_quoted = false;
-    let mut has_comma = false;
-    let plain = line.chars().filter_map(|sign| {
-        is_quoted ^= sign == '"';
-        match sign {
-            '"' => None,
-            ',' if is_quoted => {
-                has_comma = true;
-                Some('.')
-            }
-            _ => Some(sign),
-        }
-    });
-    if !line.contains('"') || line.contains(';') {
-        return None;
-    }
-    let plain: String = plain.collect();
-    has_comma.then_some(plain)
-}
-
-fn decimal_commas(line: u64, text: &str, between: &str) -> Fault {
-    let text = shown(text);
-    Fault::at(
-        line,
-        format!("'{text}' may be numbers with decimal commas between {between}"),
-        "write decimal points, or semicolons between the numbers",
-    )
-}
-
-/// Whether these are three numbers or more between blanks or tabs, and one or more have a decimal comma.
-fn between_blanks_are_decimal_commas(text: &str) -> bool {
-    let is_number = |word: &str| {
-        let parts: Vec<&str> = word.split(',').collect();
-        parts.len() <= 2 && parts.concat().parse::<f64>().is_ok() && !word.contains('.')
-    };
-    let words: Vec<&str> = text.split_whitespace().collect();
-    words.len() >= 3 && words.iter().all(|word| is_number(word)) && text.contains(',')
-}
-
 fn not_a_number(line: u64, word: &str) -> Fault {
     let what = format!("'{}' is not a number", shown(word));
     Fault::at(line, what, "correct or remove the line")
@@ -323,133 +266,6 @@ impl Separator {
             Self::Tab | Self::Spaces => line.split_ascii_whitespace().for_each(&mut push),
         }
         wrong
-    }
-}
-
-/// A column's name without quotes, and without the unit of `X [m]` and `x(m)`.
-fn plain_name(name: &str) -> &str {
-    let name = name.trim_matches(['"', '\'']);
-    name.split(['[', '(']).next().unwrap_or_default().trim()
-}
-
-/// The unit that the names of x, y and z have in brackets; `None` where one has none.
-///
-/// # Errors
-/// What is wrong where they are not alike.
-fn unit_of(names: &[&str; 3]) -> Result<Option<LengthUnit>, String> {
-    let unit = |name: &str| -> Option<LengthUnit> {
-        let (_, behind) = name.split_once(['[', '('])?;
-        behind.split([']', ')']).next()?.trim().parse().ok()
-    };
-    match names.map(unit) {
-        [Some(x), Some(y), Some(z)] if x == y && y == z => Ok(Some(x)),
-        [Some(x), Some(y), Some(z)] => Err(format!("x is in {x}, y in {y} and z in {z}")),
-        _ => Ok(None),
-    }
-}
-
-/// Where on a line the coordinates and colours stand.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Columns {
-    position: [usize; 3],
-    color: Option<[usize; 3]>,
-    /// Colours from 0 to 1.
-    fractions: bool,
-    /// The angles of a camera: where they are named, words are photos' names, and this is no cloud.
-    angles: bool,
-}
-
-impl Columns {
-    fn of_names(names: &[&str]) -> Option<Self> {
-        let names: Vec<&str> = names.iter().map(|name| plain_name(name)).collect();
-        // The first alias that stands there: "x" before "e" of a line that has both.
-        let find = |aliases: &[&str]| {
-            let place = |alias: &&str| {
-                names
-                    .iter()
-                    .position(|name| name.eq_ignore_ascii_case(alias))
-            };
-            aliases.iter().find_map(place)
-        };
-        let position = [
-            find(&["x", "easting", "east", "e"])?,
-            find(&["y", "northing", "north", "n"])?,
-            find(&["z", "elevation", "height", "altitude", "elev", "alt", "h"])?,
-        ];
-        let color = |aliases: [&[&str]; 3]| {
-            let [red, green, blue] = aliases.map(find);
-            Some([red?, green?, blue?])
-        };
-        let fractions = color([&["rf"], &["gf"], &["bf"]]);
-        let whole = color([&["red", "r"], &["green", "g"], &["blue", "b"]]);
-        Some(Self {
-            position,
-            color: fractions.or(whole),
-            fractions: fractions.is_some(),
-            angles: find(&["omega", "yaw", "heading", "pitch"]).is_some(),
-        })
-    }
-
-    /// Those of COLMAP's points3D.txt without its comment: POINT3D_ID X Y Z R G B ERROR, then IMAGE_ID POINT2D_IDX of each photo.
-    fn of_colmap(first: &[f64]) -> Option<Self> {
-        let is_count = |value: &f64| value.fract() == 0.0 && *value >= 0.0;
-        let [id, x, y, z, colors @ .., error] = first.get(..8)? else {
-            return None;
-        };
-        // Two photos at least show each; laser scanners write up to three whole numbers behind a time.
-        let track = first.get(8..).filter(|track| track.len() >= 4)?;
-        let is_one = is_count(id)
-            && [x, y, z].iter().any(|value| value.fract() != 0.0)
-            && colors
-                .iter()
-                .all(|value| is_count(value) && *value <= 255.0)
-            && error.fract() != 0.0
-            && (0.0..100.0).contains(error)
-            && track.len() % 2 == 0
-            && track.iter().all(is_count);
-        is_one.then_some(Self {
-            position: [1, 2, 3],
-            color: Some([4, 5, 6]),
-            fractions: false,
-            angles: false,
-        })
-    }
-
-    fn of_numbers(first: &[f64]) -> Self {
-        let is_channel = |n: &f64| n.fract() == 0.0 && (0.0..=255.0).contains(n);
-        let colors = first
-            .get(3..6)
-            .is_some_and(|three| three.iter().all(is_channel));
-        Self {
-            position: [0, 1, 2],
-            color: colors.then_some([3, 4, 5]),
-            fractions: false,
-            angles: false,
-        }
-    }
-
-    fn reads(&self, column: usize) -> bool {
-        let angles = self.angles;
-        angles
-            || self.position.contains(&column)
-            || self.color.is_some_and(|three| three.contains(&column))
-    }
-
-    fn pick(&self, fields: &[f64]) -> Option<(DVec3, Option<[u8; 3]>)> {
-        let three = |columns: [usize; 3]| {
-            let [a, b, c] = columns.map(|column| fields.get(column).copied());
-            Some([a?, b?, c?])
-        };
-        let position = DVec3::from_array(three(self.position)?);
-        let color = match self.color {
-            Some(columns) => {
-                let factor = if self.fractions { 255.0 } else { 1.0 };
-                // `as` saturates.
-                Some(three(columns)?.map(|channel| (channel * factor).round() as u8))
-            }
-            None => None,
-        };
-        Some((position, color))
     }
 }
 
