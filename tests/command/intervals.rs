@@ -284,3 +284,44 @@ fn the_tables_percentage_is_that_of_the_csv() {
     }
     assert_eq!(compared, 9);
 }
+
+/// Of a pose of which one half is stated the other is named: a degree of angles is little beside a metre of places.
+#[test]
+fn the_half_of_a_pose_that_nobody_states_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
+    let text = fs::read_to_string(sample.join("flight.toml")).expect("a flight");
+    for file in ["pile.ply", "poses.csv", "camera.yaml"] {
+        if sample.join(file).is_file() {
+            fs::copy(sample.join(file), folder.path().join(file)).expect("a copy");
+        }
+    }
+    let text: String = text
+        .lines()
+        .filter(|line| !line.starts_with("folder"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let flight = folder.path().join("flight.toml");
+    for (stated, lacks, words) in [
+        (
+            "angle = 0.1",
+            Some("position"),
+            "the positions of poses, lens, world (",
+        ),
+        (
+            "position = 0.01",
+            Some("angle"),
+            "the angles of poses, lens, world (",
+        ),
+        ("position = 0.01\nangle = 0.1", None, "lens, world ("),
+    ] {
+        fs::write(&flight, format!("{text}\n[uncertainty]\n{stated}\n")).expect("written");
+        let scales = scales_json(&flight, &[]);
+        let sure = &scales["photos"][0]["uncertainty"];
+        assert_eq!(sure["pose_lacks"].as_str(), lacks, "{sure}");
+        assert_eq!(sure["not_counted"], serde_json::json!(["lens", "world"]));
+        let table = stdout_of(&["scales", flight.to_str().expect("UTF-8")]);
+        let says = format!("nobody states how sure it is: {words}");
+        assert!(table.contains(&says), "{table}");
+    }
+}

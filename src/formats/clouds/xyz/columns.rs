@@ -28,7 +28,7 @@ pub(super) fn unit_of(names: &[&str; 3]) -> Result<Option<LengthUnit>, String> {
 
 /// Where on a line the coordinates and colours stand.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Columns {
+pub(super) struct Columns {
     position: [usize; 3],
     color: Option<[usize; 3]>,
     /// Colours from 0 to 1.

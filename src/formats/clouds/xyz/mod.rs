@@ -23,8 +23,6 @@ mod decimal_commas;
 
 use std::io::BufRead;
 
-use glam::DVec3;
-
 use crate::clouds::cloud_file::CloudFile;
 use crate::fault::Fault;
 use crate::jobs::Progress;
