@@ -291,10 +291,8 @@ fn the_half_of_a_pose_that_nobody_states_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
     let text = fs::read_to_string(sample.join("flight.toml")).expect("a flight");
-    for file in ["pile.ply", "poses.csv", "camera.yaml"] {
-        if sample.join(file).is_file() {
-            fs::copy(sample.join(file), folder.path().join(file)).expect("a copy");
-        }
+    for file in ["pile.ply", "poses.csv", "ost.yaml"] {
+        fs::copy(sample.join(file), folder.path().join(file)).expect("a copy");
     }
     let text: String = text
         .lines()

@@ -29,7 +29,7 @@ pub(super) fn unit_of(names: &[&str; 3]) -> Result<Option<LengthUnit>, String> {
 /// Where on a line the coordinates and colours stand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Columns {
-    position: [usize; 3],
+    pub(super) position: [usize; 3],
     color: Option<[usize; 3]>,
     /// Colours from 0 to 1.
     fractions: bool,

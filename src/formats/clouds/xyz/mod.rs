@@ -269,6 +269,7 @@ impl Separator {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
     use proptest::prelude::*;
 
     use super::*;
