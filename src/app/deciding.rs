@@ -19,22 +19,30 @@ impl State {
 
     /// Takes many along.
     pub(crate) fn choose_all(&mut self, choice: Choice) {
-        self.choose_each(|_, reviewed| match choice {
+        let accepted = self.choose_each(|_, reviewed| match choice {
             Choice::WithScale => reviewed.own_verdict != Verdict::NoScale,
             Choice::Trusted => reviewed.own_verdict == Verdict::Trust,
             Choice::None => false,
         });
+        // Of one photo she sees it beside its reasons.
+        let said = match accepted {
+            0 => return,
+            1 => "1 doubtful photo is accepted by that, whatever its reasons are".to_owned(),
+            n => format!("{n} doubtful photos are accepted by that, whatever their reasons are"),
+        };
+        self.say(Severity::Note, &said);
     }
 
-    /// Decides whatever is needed so that those photos go along for which `wanted` says so.
-    fn choose_each(&mut self, wanted: impl Fn(usize, PhotoReview<'_>) -> bool) {
+    /// Decides whatever is needed so that those photos go along for which `wanted` says so. Returns how many doubtful ones it accepted.
+    fn choose_each(&mut self, wanted: impl Fn(usize, PhotoReview<'_>) -> bool) -> usize {
         let Some(open) = &self.open else {
-            return;
+            return 0;
         };
         if !open.review.is_looked_at() {
             self.say(Severity::Note, STILL_LOOKING);
-            return;
+            return 0;
         }
+        let mut accepted = 0;
         let mut settings = open.settings();
         for (place, photo) in open.review.photos().enumerate() {
             let wanted = wanted(place, photo);
@@ -43,10 +51,12 @@ impl State {
                     date: today(),
                     ..decision
                 });
+                accepted += usize::from(wanted && photo.is_doubtful());
                 settings.decide(photo.name(), decision);
             }
         }
         self.set_settings(settings);
+        accepted
     }
 
     /// Decides about a photo, today and for the reasons of now.

@@ -59,7 +59,7 @@ impl HealthItem {
             }
             Doubt::UnderSurface | Doubt::FromBehind | Doubt::TurnedMesh => Some(Self::UpAxis),
             Doubt::OtherColours { .. } | Doubt::Flipped { .. } => Some(Self::Colours),
-            Doubt::OtherDistance { .. } => Some(Self::Distance),
+            Doubt::OtherDistance { .. } | Doubt::OthersElsewhere { .. } => Some(Self::Distance),
             Doubt::StrangeCamera { .. }
             | Doubt::SeveralDevices { .. }
             | Doubt::OtherDevice { .. }
@@ -169,6 +169,7 @@ impl Remedy {
             | Doubt::FocalLength { .. }
             | Doubt::OtherColours { .. }
             | Doubt::OtherDistance { .. }
+            | Doubt::OthersElsewhere { .. }
             | Doubt::Flipped { .. } => None,
         }
     }

@@ -23,6 +23,7 @@ mod tiles;
 mod triangle_blocks;
 mod up_axis;
 mod walk;
+mod welded;
 
 use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};

@@ -1,6 +1,6 @@
 //! The triangles of a surface in patches of neighbours, each with a box around it: for whoever wants
 //! those in some part of the world, and not the rest. A cloud is triangulated tile by tile; a mesh is
-//! cut into runs of faces as they stand in its file.
+//! cut into runs of neighbouring faces.
 
 use glam::DVec3;
 
@@ -9,6 +9,7 @@ use super::made_once::MadeOnce;
 use super::mesh::Mesh;
 use super::tiles::Tiles;
 use super::triangle_blocks::{TriangleBlock, blocks_of};
+use super::welded::welded_neighbours;
 use super::{Shape, Surface, SurfaceError, longest_edge};
 use crate::geometry::{Bounds, LocalFrame};
 
@@ -53,8 +54,7 @@ impl Patch<'_> {
     }
 
     /// The points of patches left out in turn, those that the triangles of their own patch surround; the
-    /// first call does it, on all cores. Of a mesh only those whose triangles stand near each other in its
-    /// file.
+    /// first call does it, on all cores.
     pub fn left_out<'a>(patches: &'a [Patch<'a>]) -> impl Iterator<Item = LeftOut> {
         let make = |patch: &Patch<'_>| leave_out_each(patch.points, patch.triangles, patch.up);
         MadeOnce::make_all(patches, |patch| patch.left_out, make);
@@ -109,11 +109,10 @@ impl<'a> Patches<'a> {
             }
             Shape::Mesh(mesh) => {
                 let runs = whole.runs.get_or_init(|| runs(mesh));
-                let triangles = mesh.triangles().chunks(FACES).zip(runs);
-                triangles
-                    .map(|(triangles, run)| Patch {
+                runs.iter()
+                    .map(|run| Patch {
                         points,
-                        triangles,
+                        triangles: &run.triangles,
                         blocks: &run.blocks,
                         max_edge,
                         left_out: &run.left_out,
@@ -147,9 +146,10 @@ impl Surface {
     }
 }
 
-/// A run of faces of a mesh, as they stand in its file.
+/// A run of neighbouring faces of a mesh.
 #[derive(Debug)]
 pub(super) struct Run {
+    triangles: Vec<[u32; 3]>,
     bounds: Bounds,
     blocks: Vec<TriangleBlock>,
     left_out: MadeOnce<Vec<Kept>>,
@@ -158,12 +158,14 @@ pub(super) struct Run {
 
 fn runs(mesh: &Mesh) -> Vec<Run> {
     let points = mesh.points();
-    let runs = mesh.triangles().chunks(FACES);
+    let neighbours = welded_neighbours(points, mesh.triangles());
+    let runs = neighbours.chunks(FACES);
     runs.filter_map(|run| {
         let corners: Vec<DVec3> = run.iter().flatten().map(|&i| points[i as usize]).collect();
         Some(Run {
             bounds: Bounds::of(&corners)?,
             blocks: blocks_of(run, points),
+            triangles: run.to_vec(),
             left_out: MadeOnce::default(),
             up: way_up(points, run),
         })

@@ -8,7 +8,7 @@ use image::buffer::ConvertBuffer;
 
 use super::work::Task;
 use crate::camera::Camera;
-use crate::flight::{ColoursFound, TogetherFound};
+use crate::flight::{ColoursFound, Doubt, TogetherFound};
 use crate::formats::photos::photo_metadata;
 use crate::formats::{self, FileError};
 use crate::jobs::Progress;
@@ -196,8 +196,10 @@ impl State {
             let evidence = open.review.looked_up().evidence.get(photo);
             evidence.is_some_and(|evidence| !matches!(evidence.together, TogetherFound::Against(_)))
         };
+        // What follows of the others the strip says once, not the messages of every photo.
+        let of_itself = |together: &Together| together.doubt().filter(Doubt::is_of_pixels);
         let said = found.iter().filter_map(|(photo, together)| {
-            let doubt = together.doubt().filter(|_| is_new(*photo))?;
+            let doubt = of_itself(together).filter(|_| is_new(*photo))?;
             Some(format!("photo '{}': {doubt}", open.name(*photo)))
         });
         let said: Vec<String> = said.collect();

@@ -4,7 +4,7 @@
 use super::Doubt;
 
 /// All words.
-const KINDS: [&str; 44] = [
+const KINDS: [&str; 45] = [
     "no-scale",
     "off-surface",
     "no-point",
@@ -48,6 +48,7 @@ const KINDS: [&str; 44] = [
     "laser-range",
     "other-colours",
     "other-distance",
+    "others-elsewhere",
     "flipped",
 ];
 
@@ -110,6 +111,7 @@ impl Doubt {
             Self::LaserRange { .. } => "laser-range",
             Self::OtherColours { .. } => "other-colours",
             Self::OtherDistance { .. } => "other-distance",
+            Self::OthersElsewhere { .. } => "others-elsewhere",
             Self::Flipped { .. } => "flipped",
         }
     }

@@ -283,6 +283,13 @@ pub enum Doubt {
         /// Their mean correlation where the surface is.
         here: f64,
     },
+    /// Whether it sees the surface in its place it does not tell; photos of the flight that do see it elsewhere, all of them.
+    OthersElsewhere {
+        /// So many.
+        photos: usize,
+        /// At so many times its distance, their median.
+        factor: f64,
+    },
     /// The photo's colours match those of the surface when it is turned over.
     Flipped {
         /// Pearson's correlation as the photo is.
@@ -314,7 +321,11 @@ impl Doubt {
     pub fn is_of_the_pile(&self) -> bool {
         let is_of_its_place = matches!(
             self,
-            Self::FarFromSurface { .. } | Self::UnderSurface | Self::FromBehind | Self::TurnedMesh
+            Self::FarFromSurface { .. }
+                | Self::UnderSurface
+                | Self::FromBehind
+                | Self::TurnedMesh
+                | Self::OthersElsewhere { .. }
         );
         is_of_its_place || self.is_of_pixels()
     }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::Doubt;
-use crate::numbers::to_digits;
+use crate::numbers::{apart, to_digits};
 use crate::scale::{CornerName, LEAST_COVERED};
 use crate::units::in_words;
 
@@ -12,21 +12,21 @@ fn percent_off(is: f64, stated: f64) -> f64 {
     (is / stated - 1.0) * 100.0
 }
 
+/// Where a surface at so many times its distance is seen, and what a scale on it is too much of.
+fn farther(factor: f64) -> (String, &'static str) {
+    let percent = (factor - 1.0).abs() * 100.0;
+    match factor > 1.0 {
+        true => (format!("{percent:.1} % farther away"), "large"),
+        false => (format!("{percent:.1} % nearer"), "small"),
+    }
+}
+
 fn names(corners: &[CornerName]) -> String {
     let names: Vec<String> = corners
         .iter()
         .map(|corner| corner.as_str().replace('_', " "))
         .collect();
     names.join(", ")
-}
-
-/// A value and the limit that it passed, with as many digits as tell them apart, at least `digits`.
-fn apart(value: f64, limit: f64, digits: usize) -> (String, String) {
-    let at = |digits: usize| (format!("{value:.digits$}"), format!("{limit:.digits$}"));
-    (digits..digits + 6)
-        .map(at)
-        .find(|(value, limit)| value != limit)
-        .unwrap_or_else(|| at(17))
 }
 
 impl fmt::Display for Doubt {
@@ -312,14 +312,21 @@ impl fmt::Display for Doubt {
                 there,
                 here,
             } => {
-                let percent = (factor - 1.0).abs() * 100.0;
-                let (place, wrong) = match *factor > 1.0 {
-                    true => ("farther away", "large"),
-                    false => ("nearer", "small"),
+                let (place, wrong) = farther(*factor);
+                write!(
+                    f,
+                    "it and {other} see the surface {place} than it is (their pictures match there with r = {there:.2}, on the surface with {here:.2}), and its scale is too {wrong} by about as much: look whether surface, poses, heights and focal length are of one flight and one day"
+                )
+            }
+            Self::OthersElsewhere { photos, factor } => {
+                let (place, wrong) = farther(*factor);
+                let who = match photos {
+                    1 => "the one photo of the flight that does sees".to_owned(),
+                    n => format!("the {n} photos of the flight that do see"),
                 };
                 write!(
                     f,
-                    "it and {other} see the surface {percent:.1} % {place} than it is (their pictures match there with r = {there:.2}, on the surface with {here:.2}), and its scale is too {wrong} by about as much: look whether surface, poses, heights and focal length are of one flight and one day"
+                    "it does not show by itself where the surface is, and {who} it {place} than it is, none in its place: its scale, too, may be too {wrong} by about as much; look whether surface, poses, heights and focal length are of one flight and one day"
                 )
             }
             Self::Flipped {

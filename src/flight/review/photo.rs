@@ -159,7 +159,7 @@ impl<'a> PhotoReview<'a> {
     }
 
     /// The decision by which it goes along with those that are trusted, or does not; `None` where it
-    /// does so by itself.
+    /// does so by itself. What she has noted stays: then there is always a decision that has it.
     pub fn decision_to(&self, go_along: bool) -> Option<Decision> {
         if self.goes_along(Along::Trusted) == go_along {
             return self.decision.cloned();
@@ -169,7 +169,12 @@ impl<'a> PhotoReview<'a> {
             true => DecisionKind::Accepted,
             false => DecisionKind::LeftOut,
         };
-        (by_itself != go_along).then(|| Decision::new(self.name(), kind, self.doubts))
+        let note = self.decision.map(|decision| decision.note.clone());
+        let note = note.unwrap_or_default();
+        (by_itself != go_along || !note.is_empty()).then(|| Decision {
+            note,
+            ..Decision::new(self.name(), kind, self.doubts)
+        })
     }
 
     /// The reasons for doubt that were not there when the engineer accepted the photo: then it was

@@ -75,6 +75,7 @@ impl Doubt {
             | Self::FromBehind
             | Self::TurnedMesh
             | Self::OtherDistance { .. }
+            | Self::OthersElsewhere { .. }
             | Self::OtherHeights { .. }
             | Self::FlyingHeight { .. }
             | Self::LaserRange { .. } => (OnPhoto::Nothing, InView::FromSide),

@@ -234,6 +234,23 @@ fn what_the_engineer_decides() {
         (settled(&review), along(&review)),
         (Some(Verdict::LeftOut), [false, false])
     );
+    // Chosen or not with the space bar: what she noted is kept.
+    let noted = Decision {
+        note: "taped, fits".to_owned(),
+        ..Decision::new(
+            "a.jpg",
+            DecisionKind::Accepted,
+            review.photo(0).unwrap().doubts,
+        )
+    };
+    review.take_decisions(std::slice::from_ref(&noted));
+    let off = review.photo(0).unwrap().decision_to(false).unwrap();
+    assert_eq!(
+        (off.kind, off.note.as_str()),
+        (DecisionKind::LeftOut, "taped, fits")
+    );
+    review.take_decisions(&[off]);
+    assert_eq!(review.photo(0).unwrap().decision_to(true), Some(noted));
     // Of a photo that is not there, nothing is taken.
     let other = Decision {
         photo: "b.jpg".to_owned(),
