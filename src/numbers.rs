@@ -152,6 +152,15 @@ pub fn to_digits(number: f64, digits: usize) -> f64 {
     format!("{number:.decimals$e}").parse().unwrap_or(number)
 }
 
+/// A value and the limit that it passed, with as many decimals as tell them apart, at least `decimals`.
+pub fn apart(value: f64, limit: f64, decimals: usize) -> (String, String) {
+    let at = |decimals: usize| (format!("{value:.decimals$}"), format!("{limit:.decimals$}"));
+    (decimals..decimals + 6)
+        .map(at)
+        .find(|(value, limit)| value != limit)
+        .unwrap_or_else(|| at(17))
+}
+
 /// The largest of 1, 2 and 5 times a power of ten that is no larger than `most`, without the noise of
 /// the power; `None` where there is none.
 pub fn round_down(most: f64) -> Option<f64> {

@@ -60,7 +60,9 @@ pub use measured::{
     points_table, profile_csv, profile_json, profile_table, profile_warnings, volume_csv,
     volume_json, volume_table, volume_warnings,
 };
-pub use missions::{MissionFiles, MissionFormat, WrittenMission, mission_files, write_missions};
+pub use missions::{
+    MissionFiles, MissionFormat, WrittenMission, flights_for, mission_files, write_missions,
+};
 pub use photo_columns::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn};
 pub use photo_file_names::photo_file_stems;
 pub use plan::{

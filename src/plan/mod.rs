@@ -4,7 +4,7 @@
 //! ```text
 //! wish/       what is asked for: scale, pattern, gaps, gimbal, clearance; what is usual; what a flight's file keeps of it
 //! tiles       heights in tiles, which are kept
-//! terrain     heights on a raster, planes of the ground, how near a point in the air is to it
+//! terrain/    heights on a raster, planes of the ground, how near a point in the air is to it; what of a plan lies beyond it
 //! drones      cameras and gimbals that are often flown
 //! area        the ground to be photographed: the pile found by itself
 //! keep_out    the ground that is not flown over, and the way around it
@@ -65,7 +65,7 @@ pub use mission::{
 pub use photo::{PlannedPhoto, Purpose, Refused};
 pub use steadiness::{PoseErrors, Positioning};
 pub use sun::{Shadows, Sun};
-pub use terrain::{GroundPlane, Terrain, ground_at};
+pub use terrain::{Beyond, GroundPlane, Terrain, ground_at};
 pub use way::{
     Flying, MOST_SPEED, Pace, USUAL_CLIMB, USUAL_DESCENT, USUAL_SETTLE, USUAL_SPEED, Way, WayPoint,
 };
@@ -78,6 +78,7 @@ use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::geometry::{Bounds, extent};
 use crate::jobs::Progress;
+use crate::numbers::apart;
 use crate::surface::Surface;
 use crate::survey::Polygon;
 use keep_out::KeepOut;
@@ -384,9 +385,10 @@ impl Plan {
                 let [least, greatest] = forecast.bulk;
                 let off = (greatest - pixels).max(pixels - least);
                 if off > within {
-                    let percent = off / pixels * 100.0;
+                    let [off, within] = [off, within].map(|scale| scale / pixels * 100.0);
+                    let (off, within) = apart(off, within, 0);
                     troubles.push(format!(
-                        "98 % of its scales are only within {percent:.0} % of the wished one"
+                        "98 % of its scales are only within {off} % of the wished one, not {within} %"
                     ));
                 }
             }
@@ -399,8 +401,10 @@ impl Plan {
             troubles.push(format!("{share:.0} % of it looks beyond the surface"));
         }
         if self.wish.pattern.is_square() && photo.off_normal > self.wish.off_normal {
-            let off = photo.off_normal;
-            troubles.push(format!("its axis is {off:.0} degrees off the normal"));
+            let (off, most) = apart(photo.off_normal, self.wish.off_normal, 0);
+            troubles.push(format!(
+                "its axis is {off} degrees off the normal, more than {most}"
+            ));
         }
         troubles
     }

@@ -86,7 +86,7 @@ impl PlannedPhoto {
 pub struct Refused {
     /// What it was to show.
     pub place: DVec2,
-    /// Why, one clause.
+    /// Why, one clause; what it says of this photo alone stands behind a colon.
     pub why: String,
 }
 
@@ -95,6 +95,12 @@ pub(super) const NO_GROUND: &str =
     "most of the photo would look beyond the surface, or into a hole of it";
 
 impl Refused {
+    /// Why, without what that says of this photo alone: photos with one cause are told together.
+    pub fn cause(&self) -> &str {
+        let parts = self.why.split_once(':');
+        parts.map_or(self.why.as_str(), |(cause, _)| cause)
+    }
+
     /// Of a place that has no ground to look at.
     pub(super) fn without_ground(place: DVec2) -> Self {
         let why = NO_GROUND.to_owned();

@@ -2,11 +2,11 @@
 //!
 //! The way begins and ends at the take-off, and goes up to a safe height before the first photo and behind the last: as
 //! stops of their own, for some ground stations know no such height, and fly straight. Where one battery does not
-//! last, the way is cut: each piece goes out from the take-off and back to it. A leg that comes too near to the ground
-//! goes up first, over, and down: straight up and down is free, for the ground has one height at each place. A leg that
-//! would lead over an area to keep out of goes around it. A leg that climbs or falls more steeply than is wished
-//! ([`Pace::steepest`]) is flown in two, one straight up or down and one level, on the higher side: multirotors may climb
-//! upright, and no slanted leg passes along a face.
+//! last, or a mission's file does not take all of it, the way is parted: each part goes out from the take-off and back to
+//! it. A leg that comes too near to the ground goes up first, over, and down: straight up and down is free, for the ground
+//! has one height at each place. A leg that would lead over an area to keep out of goes around it. A leg that climbs or
+//! falls more steeply than is wished ([`Pace::steepest`]) is flown in two, one straight up or down and one level, on the
+//! higher side: multirotors may climb upright, and no slanted leg passes along a face.
 
 use std::ops::Range;
 
@@ -159,29 +159,25 @@ impl Way {
             let what = "the take-off does not lie on the surface";
             elsewhere(what, take_off, surface)
         })?;
-        let pilot = Pilot {
-            plan,
-            take_off: take_off.extend(ground),
-            keep_out: KeepOut::new(&plan.wish.keep_out, plan.wish.clearance)?,
-            pace,
-        };
-        if pilot.keep_out.holds(take_off) {
-            let what = "the take-off lies in an area to keep out of, or too near to it";
-            return Err(Fault::new(what, "take off elsewhere"));
+        let fits_anywhere = |_: &Self| true;
+        Pilot::new(plan, take_off.extend(ground), pace, &fits_anywhere)?.ways()
+    }
+
+    /// The photos of ways parted anew: by battery, and so that each way fits what takes so many stops only, as the file of a
+    /// mission. Each goes out from the take-off and back to it.
+    ///
+    /// # Errors
+    /// As [`Way::through`], and where the way to a single photo does not fit.
+    pub fn parted(
+        plan: &Plan,
+        ways: &[Self],
+        pace: &Pace,
+        fits: &dyn Fn(&Self) -> bool,
+    ) -> Result<Vec<Self>, Fault> {
+        match ways.first() {
+            None => Ok(Vec::new()),
+            Some(way) => Pilot::new(plan, way.take_off, pace, fits)?.ways(),
         }
-        let (mut first, end) = (0, plan.photos.len());
-        let mut ways = Vec::new();
-        while first < end {
-            let Some((reached, way)) = pilot.longest(first)? else {
-                let name = &plan.photos[first].name;
-                let what = format!("a battery does not last to photo {name} and back");
-                let remedy = "take off nearer, fly faster, or leave it out of the area";
-                return Err(Fault::new(what, remedy));
-            };
-            ways.push(way);
-            first = reached;
-        }
-        Ok(ways)
     }
 
     /// Seconds in the air.
@@ -235,27 +231,83 @@ struct Pilot<'a> {
     take_off: DVec3,
     keep_out: KeepOut<'a>,
     pace: &'a Pace,
+    /// Whether a way does not have too many stops.
+    fits: &'a dyn Fn(&Way) -> bool,
+}
+
+impl<'a> Pilot<'a> {
+    /// Who takes off from a place on the ground.
+    ///
+    /// # Errors
+    /// Where nobody takes off from there.
+    fn new(
+        plan: &'a Plan,
+        take_off: DVec3,
+        pace: &'a Pace,
+        fits: &'a dyn Fn(&Way) -> bool,
+    ) -> Result<Self, Fault> {
+        let keep_out = KeepOut::new(&plan.wish.keep_out, plan.wish.clearance)?;
+        if keep_out.holds(take_off.truncate()) {
+            let what = "the take-off lies in an area to keep out of, or too near to it";
+            return Err(Fault::new(what, "take off elsewhere"));
+        }
+        Ok(Self {
+            plan,
+            take_off,
+            keep_out,
+            pace,
+            fits,
+        })
+    }
 }
 
 impl Pilot<'_> {
-    /// The way from a photo on through as many as a battery lasts for, and behind which it ends; `None` where it does
-    /// not last for one.
+    /// The ways through all photos, as few as there may be.
+    fn ways(&self) -> Result<Vec<Way>, Fault> {
+        let (mut first, end) = (0, self.plan.photos.len());
+        let mut ways = Vec::new();
+        while first < end {
+            let Some((reached, way)) = self.longest(first)? else {
+                let name = &self.plan.photos[first].name;
+                let alone = self.over(first..first + 1)?;
+                let what = match self.lasts(&alone) {
+                    false => format!("a battery does not last to photo {name} and back"),
+                    true => format!(
+                        "the way to photo {name} and back has more stops than a mission takes"
+                    ),
+                };
+                let remedy = "take off nearer, fly faster, or leave it out of the area";
+                return Err(Fault::new(what, remedy));
+            };
+            ways.push(way);
+            first = reached;
+        }
+        Ok(ways)
+    }
+
+    /// Whether a battery lasts for a way.
+    fn lasts(&self, way: &Way) -> bool {
+        let battery = self.pace.battery;
+        battery.is_none_or(|battery| way.seconds(self.pace) <= battery)
+    }
+
+    /// The way from a photo on through as many as a battery lasts for and as fit, and behind which it ends; `None` where that
+    /// is not one.
     fn longest(&self, first: usize) -> Result<Option<(usize, Way)>, Fault> {
         let end = self.plan.photos.len();
-        let lasting = |end: usize| {
+        let flown = |end: usize| -> Result<Option<(usize, Way)>, Fault> {
             let way = self.over(first..end)?;
-            let battery = self.pace.battery;
-            let lasts = battery.is_none_or(|battery| way.seconds(self.pace) <= battery);
-            Ok(lasts.then_some((end, way)))
+            let is_one = self.lasts(&way) && (self.fits)(&way);
+            Ok(is_one.then_some((end, way)))
         };
-        if let Some(all) = lasting(end)? {
+        if let Some(all) = flown(end)? {
             return Ok(Some(all));
         }
-        // One photo more always takes longer.
+        // One photo more always takes longer, and more stops.
         let (mut reached, mut too_far, mut longest) = (first, end, None);
         while too_far - reached > 1 {
             let middle = (reached + too_far) / 2;
-            match lasting(middle)? {
+            match flown(middle)? {
                 Some(found) => (reached, longest) = (middle, Some(found)),
                 None => too_far = middle,
             }

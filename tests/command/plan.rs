@@ -175,7 +175,7 @@ fn what_makes_no_plan_is_one_line() {
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
-    // Its coordinate system says it, too: feet of Colorado are no metres.
+    // Its coordinate system says it, too: US survey feet are no metres.
     let metres = String::from_utf8_lossy(&output.stdout).into_owned();
     let told_by = |option: [&str; 2]| {
         let mut without = said.clone();
@@ -186,9 +186,21 @@ fn what_makes_no_plan_is_one_line() {
         String::from_utf8_lossy(&output.stdout).into_owned()
     };
     assert_eq!(told_by(["--crs", "EPSG:32632"]), metres);
-    let feet = told_by(["--crs", "EPSG:2231"]);
+    let feet = told_by([
+        "--crs",
+        "+proj=utm +zone=32 +datum=WGS84 +units=us-ft +no_defs",
+    ]);
     assert!(feet.contains("us-ft") && feet != metres, "{feet}");
     assert_eq!(told_by(["--unit", "us-ft"]), feet);
+    // Web Mercator stretches by 1 / cos(latitude): there at 43.576 degrees north (pyproj).
+    let mercator = [&said[..], &["--crs", "EPSG:3857"]].concat();
+    let output = fragscale(&mercator);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{error}");
+    assert!(
+        error.contains("a metre of EPSG:3857 is 0.72") && error.contains("on the ground there"),
+        "{error}"
+    );
     let geocentric = [&said[..], &["--crs", "EPSG:4978"]].concat();
     let output = fragscale(&geocentric);
     let error = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -299,6 +311,106 @@ fn missions_of_another_plan_are_named() {
         !second.contains("m-old") && !second.contains("m-1"),
         "{second}"
     );
+}
+
+/// More photos than Litchi takes are flights of their own, in every file alike: one a way, with its photos, and page, JSON and notes
+/// say how many. That DJI's app alone takes them all at once.
+#[test]
+fn a_long_way_is_several_flights() {
+    let folder = tempfile::tempdir().unwrap();
+    let flight = plane(folder.path());
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (csv, geojson, sheet) = (path("m.csv"), path("m.geojson"), path("m.html"));
+    let survey = ["--pattern", "survey", "--survey-overlap", "90"];
+    let said = |more: &[&str]| {
+        let more = [&survey[..], &["--format", "json"], more].concat();
+        let output = planned(&flight, &more);
+        let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{notes}");
+        let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+        (told, notes)
+    };
+    let files = ["--mission", &csv, "--mission", &geojson, "--sheet", &sheet];
+    let (told, notes) = said(&files);
+    let ways = told["ways"].as_array().unwrap();
+    let photos = told["photos"].as_array().unwrap();
+    assert!(photos.len() > 99 && ways.len() > 1, "{}", photos.len());
+    let flights = format!(
+        "Litchi takes 99 stops at once: the way is in {} flights",
+        ways.len()
+    );
+    assert!(notes.contains(&flights), "{notes}");
+    let mut taken = 0;
+    for (way, number) in ways.iter().zip(1..) {
+        let names = way["photos"].as_array().unwrap();
+        taken += names.len();
+        let told = stdout_of(&["mission", &path(&format!("m-{number}.geojson"))]);
+        for name in names {
+            let name = format!("photo {}\n", name.as_str().unwrap());
+            assert!(told.contains(&name), "{number}: {name}");
+        }
+        let litchi = fs::read_to_string(path(&format!("m-{number}.csv"))).unwrap();
+        assert!(litchi.lines().count() <= 1 + 99);
+    }
+    assert_eq!(taken, photos.len());
+    assert!(!Path::new(&path(&format!("m-{}.csv", ways.len() + 1))).exists());
+    let page = fs::read_to_string(&sheet).unwrap();
+    assert!(page.contains("Flight 2") && !page.contains("Battery 2"));
+    let (told, notes) = said(&["--mission", &path("d.kmz")]);
+    assert_eq!(told["ways"].as_array().unwrap().len(), 1);
+    assert!(Path::new(&path("d.kmz")).exists() && !notes.contains("at once"));
+}
+
+/// The surface ends at x 450000 and 450200, y 5400000 and 5400200: of an area at its corner the survey's ring is flown beyond,
+/// where nobody knows the ground. That is counted and said, on standard error, in JSON and on the page; of one in its middle not.
+#[test]
+fn flying_beyond_the_surface_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let flight = plane(folder.path());
+    let sheet = folder.path().join("m.html").display().to_string();
+    let said = |area: &str| {
+        let scale = [
+            "--drone",
+            "mavic-3e",
+            "--scale",
+            "1 px/cm",
+            "--pattern",
+            "survey",
+        ];
+        let places = ["--area", area, "--take-off", "450100,5400100"];
+        let more = ["--format", "json", "--force", "--sheet", &sheet];
+        let output = fragscale(&[&["plan", &flight][..], &scale, &places, &more].concat());
+        let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{notes}");
+        let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+        (told, notes, fs::read_to_string(&sheet).unwrap())
+    };
+    let (told, notes, page) = said("450002,5400002;450022,5400002;450022,5400022;450002,5400022");
+    let photos = told["photos"].as_array().unwrap();
+    let out = photos.iter().filter(|photo| {
+        let at = |i: usize| photo["center"][i].as_f64().unwrap();
+        at(0) < 450_000.0 - 2.0 || at(1) < 5_400_000.0 - 2.0
+    });
+    let out = out.count() as u64;
+    let beyond = &told["beyond_surface"];
+    assert!(
+        out > 3 && beyond["stops"].as_u64().unwrap() >= out,
+        "{beyond}"
+    );
+    assert!(beyond["legs"].as_u64().unwrap() > out && beyond["farthest"].as_f64().unwrap() > 2.0);
+    let words = "legs lie beyond the surface, up to ";
+    assert!(
+        notes.contains(words) && notes.contains("nobody knows what stands there"),
+        "{notes}"
+    );
+    assert_eq!(
+        page.matches(words).count(),
+        2,
+        "among the warnings, and beside the clearance"
+    );
+    let (told, notes, page) = said("450090,5400090;450110,5400090;450110,5400110;450090,5400110");
+    assert_eq!(told["beyond_surface"]["stops"], 0);
+    assert!(!notes.contains(words) && !page.contains(words), "{notes}");
 }
 
 /// What a careful pilot is told: a clearance within what the drone is off its place by satellites alone (1.5 m, so 2.9 m for 95 of

@@ -5,14 +5,15 @@ use std::sync::Arc;
 use super::{MadePlan, PlanStep, no_system};
 use crate::command::{Command, Destination};
 use crate::exports::{
-    FlightSheet, MissionFormat, PlanReport, flight_sheet, plan_csv, plan_json, write_missions,
+    FlightSheet, MissionFormat, PlanReport, WrittenMission, flight_sheet, flights_for, plan_csv,
+    plan_json, write_missions,
 };
 use crate::fault::Fault;
 use crate::files::{self, Kind};
 use crate::formats::FileError;
 use crate::geodesy::Crs;
 use crate::jobs::Progress;
-use crate::plan::{Told, missions};
+use crate::plan::{Told, is_over_ground, missions};
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 
@@ -59,22 +60,28 @@ impl State {
             unit: open.flight().parts().unit,
             speed: asked.flying.speed,
             settle: asked.flying.settle,
+            by_battery: asked.flying.battery.is_some(),
         };
-        let missions = (MissionFormat::of(&to.path))
-            .and_then(|format| format.check_drone(asked.drone.as_ref()))
-            .and_then(|()| match &made.no_way {
+        let target = MissionFormat::of(&to.path)
+            .and_then(|format| {
+                format.check_drone(asked.drone.as_ref())?;
+                Ok(format)
+            })
+            .and_then(|format| match &made.no_way {
                 Some(why) => Err(Fault::new(why, "change the plan")),
                 None if made.ways.is_empty() => {
                     let what = "nobody says where the drone takes off";
                     Err(Fault::new(what, "set the take-off"))
                 }
-                None => Ok(()),
+                None => Ok(format),
             })
-            .and_then(|()| open.files.crs.as_deref().ok_or_else(no_system))
-            .and_then(Crs::understand)
-            .and_then(|crs| missions(&made.plan, &made.ways, &crs, &told));
-        let missions = match missions {
-            Ok(missions) => missions,
+            .and_then(|format| {
+                let crs = open.files.crs.clone().ok_or_else(no_system)?;
+                is_over_ground(told.unit, &Crs::understand(&crs)?)?;
+                Ok((format, crs))
+            });
+        let (format, crs) = match target {
+            Ok(target) => target,
             Err(fault) => {
                 let error = FileError::new(&to.path, fault);
                 return self.say(Severity::Error, &error.to_string());
@@ -85,10 +92,18 @@ impl State {
         if !self.may_write(&to, Kind::Result, &read, command) {
             return;
         }
-        let work = move |progress: &Progress| {
+        let flown = made.clone();
+        let work = move |progress: &Progress| -> Result<WrittenMission, FileError> {
             progress.stage("writing");
             let Destination { path, replace } = to;
-            write_missions(&missions, &path, &read, replace)
+            let at = |fault| FileError::new(&path, fault);
+            let ways = (&*flown.plan, &flown.ways[..]);
+            let (ways, said) = flights_for(&[format], ways, &flown.pace, &told).map_err(at)?;
+            let crs = Crs::understand(&crs).map_err(at)?;
+            let missions = missions(&flown.plan, &ways, &crs, &told).map_err(at)?;
+            let mut written = write_missions(&missions, &path, &read, replace)?;
+            written.notes.splice(0..0, said);
+            Ok(written)
         };
         self.start(Task::SAVE_PLAN, work, move |state, written| match written {
             Ok(written) => {

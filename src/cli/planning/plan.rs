@@ -116,7 +116,8 @@ pub(in crate::cli) struct PlanArguments {
     #[arg(long, value_name = "TIME")]
     sun: Option<String>,
     /// Write the mission to this file, for the ground station that its ending names: .kmz (DJI), .plan
-    /// (QGroundControl), .waypoints (Mission Planner), .csv (Litchi), .kml or .geojson. May be given several times.
+    /// (QGroundControl), .waypoints (Mission Planner), .csv (Litchi), .kml or .geojson. May be given several times. More
+    /// stops than one of them takes become several flights, NAME-1 and so on, each out from the take-off and home.
     #[arg(long, value_name = "FILE", requires = "take_off")]
     mission: Vec<PathBuf>,
     #[command(flatten)]
@@ -248,16 +249,23 @@ pub(in crate::cli) fn plan(
     let parts = opened.flight.parts();
     let in_flight = |fault: Fault| arguments.flight.wrong(fault);
     let flying = arguments.flying.flying();
+    let told = Told {
+        name: parts.name.clone(),
+        drone: arguments.drone().and_then(|drone| drone.codes),
+        unit,
+        speed: flying.speed,
+        settle: flying.settle,
+        by_battery: flying.battery.is_some(),
+    };
+    // All missions are parted alike, so that page and table are those of every file.
+    let targets = (arguments.mission.iter()).map(|path| MissionFormat::of(path));
+    let targets = targets.collect::<Result<Vec<_>, Fault>>();
+    let targets = targets.map_err(|fault| fault.to_string())?;
+    let flights = exports::flights_for(&targets, (&plan, &ways), &pace, &told);
+    let (ways, parted) = flights.map_err(in_flight)?;
     let missions = match arguments.mission.is_empty() || ways.is_empty() {
         true => Vec::new(),
         false => {
-            let told = Told {
-                name: parts.name.clone(),
-                drone: arguments.drone().and_then(|drone| drone.codes),
-                unit,
-                speed: flying.speed,
-                settle: flying.settle,
-            };
             let crs = crs_of(arguments, &opened)?;
             plan::missions(&plan, &ways, &crs, &told).map_err(in_flight)?
         }
@@ -281,6 +289,7 @@ pub(in crate::cli) fn plan(
         exports::plan_json,
     )?;
     warnings.extend(exports::plan_warnings(&report));
+    warnings.extend(parted);
     if !missions.is_empty() {
         for path in &arguments.mission {
             for note in outputs.write_missions(&missions, path)? {
@@ -342,6 +351,16 @@ fn planned(
     }
     let camera = camera(arguments, opened)?;
     let mut warnings: Vec<String> = plan::lying(&parts.surface).into_iter().collect();
+    // Of the flight's own system that was looked at when it was opened.
+    let bounds = parts.surface.bounds();
+    if let Some(said) = &arguments.crs
+        && opened.crs.as_ref() != Some(said)
+        && let Ok(crs) = crs()
+        && let Some(place) = crs.to_geographic(bounds.min.midpoint(bounds.max))
+    {
+        let doubt = crs.check_lengths(place).map_err(in_flight)?;
+        warnings.extend(doubt.map(|doubt| format!("--crs: {doubt}")));
+    }
     if let (Some(said), Some(own)) = (&arguments.crs, &opened.crs)
         && said != own
     {

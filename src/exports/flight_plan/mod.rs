@@ -17,7 +17,7 @@ use crate::numbers::significant_digits;
 use crate::survey::Polygon;
 use crate::units::LengthUnit;
 use fragscale_core::plan::{
-    Pace, Plan, PlannedPhoto, Purpose, Refused, Shadows, Sun, Way, homes_over_keep_out,
+    Beyond, Pace, Plan, PlannedPhoto, Purpose, Refused, Shadows, Sun, Way, homes_over_keep_out,
 };
 
 /// A plan, and how it is to be said.
@@ -31,7 +31,7 @@ pub struct PlanReport<'a> {
     pub scales: LengthUnit,
     /// The plan.
     pub plan: &'a Plan,
-    /// The ways through its photos, one a battery; empty where the take-off is not known.
+    /// The ways through its photos, one a battery or a file of its missions; empty where the take-off is not known.
     pub ways: &'a [Way],
     /// How fast they are flown.
     pub pace: Pace,
@@ -54,6 +54,14 @@ impl PlanReport<'_> {
     /// Seconds in the air.
     pub(crate) fn seconds(&self) -> f64 {
         self.ways.iter().map(|way| way.seconds(&self.pace)).sum()
+    }
+
+    /// What each of several ways is called: that of a battery, where somebody said how long one lasts, else a flight.
+    pub(crate) fn way_name(&self) -> &'static str {
+        match self.pace.battery {
+            Some(_) => "Battery",
+            None => "Flight",
+        }
     }
 }
 
@@ -195,8 +203,12 @@ pub fn plan_table(report: &PlanReport<'_>) -> String {
         let length = format!("{} {world}", number(report.way_length()));
         let minutes = significant_digits(report.seconds() / 60.0, 2);
         let mut way = format!("{length}, about {minutes} min in the air");
-        if report.ways.len() > 1 {
-            way += &format!(" with {} batteries", report.ways.len());
+        let count = report.ways.len();
+        if count > 1 {
+            way += &match report.pace.battery {
+                Some(_) => format!(" with {count} batteries"),
+                None => format!(" in {count} flights"),
+            };
         }
         said.push(("way", way));
     }
@@ -242,10 +254,46 @@ pub(crate) fn sun_in_words(report: &PlanReport<'_>) -> Option<String> {
     ))
 }
 
-/// A photo that cannot be taken, in a sentence.
-pub(crate) fn refused_in_words(refused: &Refused) -> String {
-    let place = place_in_words(refused.place);
-    format!("no photo at {place}: {}", refused.why)
+/// Photos that cannot be taken, a sentence for each cause: the first of them, and how many more there are.
+pub(crate) fn refusals(all: &[Refused]) -> Vec<String> {
+    let mut first: Vec<(&Refused, usize)> = Vec::new();
+    for refused in all {
+        let known = first
+            .iter_mut()
+            .find(|(known, _)| known.cause() == refused.cause());
+        match known {
+            Some((_, more)) => *more += 1,
+            None => first.push((refused, 0)),
+        }
+    }
+    let sentences = first.iter().map(|(refused, more)| {
+        let place = place_in_words(refused.place);
+        let others = match more {
+            0 => String::new(),
+            1 => " and at 1 other place".to_owned(),
+            more => format!(" and at {more} other places"),
+        };
+        format!("no photo at {place}{others}: {}", refused.why)
+    });
+    sentences.collect()
+}
+
+/// How much of the flight leads beyond the surface, and how far; `None` where nothing does.
+pub(crate) fn beyond_in_words(report: &PlanReport<'_>) -> Option<String> {
+    let beyond = Beyond::of(report.plan, report.ways);
+    if beyond.is_none() {
+        return None;
+    }
+    let farthest = significant_digits(beyond.farthest, 2);
+    let out = format!("beyond the surface, up to {farthest} {} out", report.world);
+    let (stops, of_stops) = (beyond.stops, beyond.of_stops);
+    Some(match beyond.of_legs {
+        0 => format!("{stops} of {of_stops} photos are taken from {out}"),
+        of_legs => format!(
+            "{stops} of {of_stops} stops and {} of {of_legs} legs lie {out}",
+            beyond.legs
+        ),
+    })
 }
 
 /// A line a photo. Numbers read back to the same f64.
@@ -302,6 +350,7 @@ pub fn plan_csv(report: &PlanReport<'_>) -> Result<String, csv::Error> {
 /// Where memory runs out.
 pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
     let plan = report.plan;
+    let beyond = Beyond::of(plan, report.ways);
     let photos = rows(report).zip(&plan.photos).enumerate();
     let photos: Vec<Value> = photos
         .map(|(number, (row, photo))| {
@@ -372,6 +421,11 @@ pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
         "least_survey_overlap": plan.cover.least_overlap,
         "homes_over_keep_out": (!report.ways.is_empty())
             .then(|| homes_over_keep_out(plan, report.ways)),
+        "beyond_surface": {
+            "stops": beyond.stops,
+            "legs": beyond.legs,
+            "farthest": beyond.farthest,
+        },
         "widest_gap": plan.cover.widest_gap,
         "ways": report.ways.iter().map(|way| json!({
             "length": way.length,
@@ -388,6 +442,31 @@ pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// What photos have in common is told once, with the first place and the number of the others.
+    #[test]
+    fn refused_photos_are_told_by_cause() {
+        let refused = |x: f64, why: &str| Refused {
+            place: DVec2::new(x, 2.0),
+            why: why.to_owned(),
+        };
+        let near = "the drone would come nearer to the ground than the clearance";
+        let all = [
+            refused(1.0, near),
+            refused(2.0, "the gimbal does not reach so far: to -37 degrees"),
+            refused(3.0, near),
+            refused(4.0, "the gimbal does not reach so far: to -41 degrees"),
+            refused(5.0, near),
+            refused(6.0, "it lies in a hole"),
+        ];
+        let said = [
+            format!("no photo at (1.00, 2.00) and at 2 other places: {near}"),
+            "no photo at (2.00, 2.00) and at 1 other place: the gimbal does not reach so far: to -37 degrees"
+                .to_owned(),
+            "no photo at (6.00, 2.00): it lies in a hole".to_owned(),
+        ];
+        assert_eq!(refusals(&all), said);
+    }
 
     #[test]
     fn directions_are_below_360() {

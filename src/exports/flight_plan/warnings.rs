@@ -1,6 +1,6 @@
 //! What is to be said of a plan beside its numbers.
 
-use super::{PlanReport, place_in_words, refused_in_words};
+use super::{PlanReport, beyond_in_words, place_in_words, refusals};
 use crate::measured::percent;
 use crate::numbers::significant_digits;
 use fragscale_core::plan::homes_over_keep_out;
@@ -12,10 +12,10 @@ const LESS_OVERLAP: f64 = 0.05;
 /// But where they share as much a reconstruction finds enough: who follows the advice is not given it again.
 const ENOUGH_OVERLAP: f64 = 0.65;
 
-/// What is to be said of a plan beside its numbers, one sentence each.
+/// What is to be said of a plan beside its numbers, one sentence each: what it shows and shares first.
 pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
     let PlanReport { plan, world, .. } = report;
-    let mut said = Vec::new();
+    let mut said = about_cover(report);
     if report.is_nominal {
         let text = "the focal length is the maker's nominal one: scales may be off by 2 %; a calibrated camera is surer";
         said.push(text.to_owned());
@@ -29,10 +29,45 @@ pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
             plan.photos.len()
         ));
     }
+    if let Some(beyond) = beyond_in_words(report) {
+        said.push(format!(
+            "{beyond}: nobody knows what stands there, and no clearance from it is kept; look there before, or give a surface that reaches so far"
+        ));
+    }
+    let off = plan.wish.errors.off_place();
+    if plan.wish.clearance < off {
+        said.push(format!(
+            "the clearance, {} {world}, is less than the drone may be off its place, {} {world} (95 %): keep farther away, or fly with corrections from a base where it is said to",
+            significant_digits(plan.wish.clearance, 3),
+            significant_digits(off, 2)
+        ));
+    }
+    let homes = homes_over_keep_out(plan, report.ways);
+    if homes > 0 {
+        let stops: usize = report.ways.iter().map(|way| way.points.len()).sum();
+        said.push(format!(
+            "from {homes} of {stops} stops the straight way home leads over an area to keep out of: where the radio is lost the drone hovers by its mission, but called home, or with a low battery, it flies straight; take off where every way home is clear, or bring it back by hand in time"
+        ));
+    }
+    said.extend(refusals(&plan.refused));
+    said
+}
+
+/// What is to be said of how much the photos show, and share.
+fn about_cover(report: &PlanReport<'_>) -> Vec<String> {
+    let PlanReport { plan, world, .. } = report;
+    let mut said = Vec::new();
     if plan.cover.off_surface > 0.03 {
         let off = percent(plan.cover.off_surface);
         said.push(format!(
             "{off} of the area lies beside the surface or in holes of it: no photo is planned there"
+        ));
+    }
+    if let (Some(at), true) = (plan.cover.gap_at, plan.has_wide_gap()) {
+        let gap = significant_digits(plan.cover.widest_gap, 2);
+        said.push(format!(
+            "photos leave a gap {gap} {world} across at {}: give more overlap, fill gaps, or fly it by hand",
+            place_in_words(at)
         ));
     }
     if let Some(share) = plan.cover.surveyed.filter(|share| *share < SURVEYED) {
@@ -53,29 +88,6 @@ pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
             percent(overlap),
             (100.0 * needed).ceil(),
             100.0 * ENOUGH_OVERLAP
-        ));
-    }
-    let off = plan.wish.errors.off_place();
-    if plan.wish.clearance < off {
-        said.push(format!(
-            "the clearance, {} {world}, is less than the drone may be off its place, {} {world} (95 %): keep farther away, or fly with corrections from a base where it is said to",
-            significant_digits(plan.wish.clearance, 3),
-            significant_digits(off, 2)
-        ));
-    }
-    let homes = homes_over_keep_out(plan, report.ways);
-    if homes > 0 {
-        let stops: usize = report.ways.iter().map(|way| way.points.len()).sum();
-        said.push(format!(
-            "from {homes} of {stops} stops the straight way home leads over an area to keep out of: where the radio is lost the drone hovers by its mission, but called home, or with a low battery, it flies straight; take off where every way home is clear, or bring it back by hand in time"
-        ));
-    }
-    said.extend(plan.refused.iter().map(refused_in_words));
-    if let (Some(at), true) = (plan.cover.gap_at, plan.has_wide_gap()) {
-        let gap = significant_digits(plan.cover.widest_gap, 2);
-        said.push(format!(
-            "photos leave a gap {gap} {world} across at {}: give more overlap, fill gaps, or fly it by hand",
-            place_in_words(at)
         ));
     }
     said

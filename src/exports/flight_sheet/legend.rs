@@ -57,7 +57,10 @@ pub(super) fn legend(sheet: &FlightSheet<'_>) -> Vec<Row> {
         let numbers: Vec<String> = again.map(|number| number.to_string()).collect();
         let words = match report.ways.len() {
             1 => "way of the drone".to_owned(),
-            _ => format!("way, battery {}", numbers.join(", ")),
+            _ => {
+                let name = report.way_name().to_lowercase();
+                format!("way, {name} {}", numbers.join(", "))
+            }
         };
         rows.push(row(Sign::Way(dash), words));
     }

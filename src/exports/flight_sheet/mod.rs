@@ -22,7 +22,7 @@ mod tests;
 mod words;
 
 use crate::fault::Fault;
-use crate::flight_plan::{PlanReport, refused_in_words};
+use crate::flight_plan::{PlanReport, refusals};
 use crate::html_page::{self, blanks, heading, notes, paragraph};
 
 /// A plan with what its sheet says besides.
@@ -53,9 +53,7 @@ pub fn flight_sheet(sheet: &FlightSheet<'_>) -> Result<String, Fault> {
     ];
     body.push(html_page::pairs(&numbers::numbers(sheet)));
     // Refused photos have a table of their own.
-    let refused: Vec<String> = (sheet.report.plan.refused.iter())
-        .map(refused_in_words)
-        .collect();
+    let refused = refusals(&sheet.report.plan.refused);
     let others = sheet.warnings.iter();
     body.push(notes(others.filter(|warning| !refused.contains(warning))));
     body.push(heading(2, "Before take-off"));

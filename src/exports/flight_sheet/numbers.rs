@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use super::FlightSheet;
-use crate::flight_plan::{PlanReport, kinds_in_words, overlap_in_words, sun_in_words};
+use crate::flight_plan::{
+    PlanReport, beyond_in_words, kinds_in_words, overlap_in_words, sun_in_words,
+};
 use crate::geodesy::Crs;
 use crate::measured::percent;
 use crate::numbers::{four_digits, significant_digits};
@@ -81,7 +83,12 @@ pub(super) fn numbers(sheet: &FlightSheet<'_>) -> Vec<(String, String)> {
     let clearance = plain(plan.wish.clearance);
     said.say(
         "Clearance",
-        format!("{clearance} {unit} from the ground and walls"),
+        match beyond_in_words(report) {
+            None => format!("{clearance} {unit} from the ground and walls"),
+            Some(beyond) => format!(
+                "{clearance} {unit} from the ground and walls as far as the surface reaches; {beyond}, where nobody knows what stands"
+            ),
+        },
     );
     let keep_out = plan.wish.keep_out.len();
     if keep_out > 0 {
@@ -130,16 +137,17 @@ fn say_ways(report: &PlanReport<'_>, first: &Way, said: &mut Said) {
     if report.ways.len() == 1 {
         return;
     }
-    for (way, battery) in report.ways.iter().zip(1..) {
+    for (way, number) in report.ways.iter().zip(1..) {
         let mut photos = way.points.iter().filter_map(|point| {
             let photo = report.plan.photos.get(point.photo?)?;
             Some(photo.name.as_str())
         });
         let first = photos.next().unwrap_or_default();
         let last = photos.next_back().unwrap_or(first);
+        let length = significant_digits(way.length, 3);
         let in_air = minutes(way.seconds(&report.pace));
-        let words = format!("{first} to {last}, about {in_air} min");
-        said.say(format!("Battery {battery}"), words);
+        let words = format!("{first} to {last}, {length} {unit}, about {in_air} min");
+        said.say(format!("{} {number}", report.way_name()), words);
     }
 }
 

@@ -36,10 +36,15 @@ pub(super) fn checklist(sheet: &FlightSheet<'_>) -> Vec<String> {
             false => "Return-to-home flies straight, over the areas to keep out of, too, also with a low battery: in need, bring the drone back by hand, and before the battery is low; where the radio is lost it is to hover, which is set at the drone, too",
         }));
     }
-    list.push(match report.ways.len() {
-        0 | 1 => said("Battery is full and warm; the way and a reserve are within what it lasts"),
-        batteries => format!(
+    list.push(match (report.ways.len(), report.pace.battery) {
+        (0 | 1, _) => {
+            said("Battery is full and warm; the way and a reserve are within what it lasts")
+        }
+        (batteries, Some(_)) => format!(
             "{batteries} batteries are full and warm; each mission is flown with a fresh one"
+        ),
+        (flights, None) => format!(
+            "Battery is full and warm before each of the {flights} flights; its way and a reserve are within what it lasts"
         ),
     });
     list.extend([

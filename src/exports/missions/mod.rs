@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! format     which there are, how many stops each takes
-//! parts      more stops than that become several missions
+//! parts      more than that becomes several
 //! heights    what a target's heights count from
 //! wpml       DJI's .kmz: template.kml and waylines.wpml, the XML of which is in xml
 //! mavlink    the commands that the next two have in common
@@ -36,6 +36,7 @@ use std::path::{Path, PathBuf};
 use fragscale_core::plan::{Above, Mission};
 
 pub use format::MissionFormat;
+pub use parts::flights_for;
 
 use crate::fault::Fault;
 use crate::files::{self, FileError, Inputs, Kind};
@@ -85,10 +86,10 @@ pub fn mission_files(mission: &Mission, format: MissionFormat) -> Result<Mission
     let mut notes = Vec::new();
     if parts.len() > 1 {
         notes.push(format!(
-            "{} takes {}: the mission is in {} files, to be flown one after the other",
-            format.in_words(),
-            format.limit_in_words(),
-            parts.len()
+            "{}: the mission is in {} files, to be flown one after the other; nobody looked at what stands between the take-off and the first and the last stop of each, as 'fragscale plan' does: look, or plan it for {}",
+            parts::limit_in_words(format),
+            parts.len(),
+            format.in_words()
         ));
     }
     if !mission.fences.is_empty() && !format.has_fences() {

@@ -29,6 +29,8 @@ pub struct Told {
     pub speed: f64,
     /// Seconds between the gimbal's arrival and the shot.
     pub settle: f64,
+    /// Whether several ways are those of batteries: their missions are called so.
+    pub by_battery: bool,
 }
 
 /// Whether a surface counts in the unit of its coordinate system, upwards along z.
@@ -58,7 +60,7 @@ pub fn is_over_ground(unit: LengthUnit, crs: &Crs) -> Result<(), Fault> {
 }
 
 /// A mission for each way of a plan over a surface in a coordinate system, with what the name of its file has behind
-/// that of the plan: nothing, or the number of the battery.
+/// that of the plan: nothing, or the number of the battery or the flight.
 ///
 /// # Errors
 /// Where the coordinate system counts in another unit than the surface, or a place of a way lies where it does not hold.
@@ -72,11 +74,12 @@ pub fn missions(
     // Of all ways: the pilot sets one, whatever battery is flown.
     let home = (return_height(plan, ways), lost_signal(plan, ways));
     let numbered = ways.iter().zip(1..).map(|(way, number)| {
-        let battery = match ways.len() {
-            0 | 1 => String::new(),
-            _ => format!("-battery-{number}"),
+        let behind = match (ways.len(), told.by_battery) {
+            (0 | 1, _) => String::new(),
+            (_, true) => format!("-battery-{number}"),
+            (_, false) => format!("-{number}"),
         };
-        let name = format!("{}{battery}", told.name);
+        let name = format!("{}{behind}", told.name);
         let mission = mission(
             plan,
             (way, home),
@@ -86,7 +89,7 @@ pub fn missions(
                 ..told.clone()
             },
         )?;
-        Ok((battery, mission))
+        Ok((behind, mission))
     });
     numbered.collect()
 }

@@ -6,6 +6,7 @@ use super::{Ground, NO_GROUND};
 use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::jobs::Progress;
+use crate::numbers::apart;
 use crate::plan::forecast::{Forecast, bulk_of};
 use crate::plan::keep_out::KeepOut;
 use crate::plan::photo::PlannedPhoto;
@@ -49,8 +50,10 @@ impl Ground<'_> {
         let (from, pitch) = (photo.pose.center, -photo.tilt);
         let [lowest, highest] = self.wish.gimbal;
         if pitch < lowest || pitch > highest {
+            let end = if pitch < lowest { lowest } else { highest };
+            let (pitch, end) = apart(pitch, end, 0);
             return Some(format!(
-                "the gimbal would have to pitch to {pitch:.0} degrees, and goes from {lowest:.0} to {highest:.0}"
+                "the gimbal does not reach so far: it would have to pitch to {pitch} degrees, and goes to {end}"
             ));
         }
         if self.terrain.is_near(from, self.wish.clearance) {

@@ -1,5 +1,6 @@
 //! What is written, read back by our own readers and looked at as text.
 
+mod parted;
 mod round_trip;
 mod traps;
 mod writing;

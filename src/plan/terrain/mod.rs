@@ -1,12 +1,15 @@
 //! The surface as a drone's pilot needs it: heights on a raster, the plane that the ground is near a place, and how
 //! near a point in the air is to it.
 
+mod beyond;
+
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
+pub use self::beyond::Beyond;
 use super::tiles::Tiles;
 use crate::fault::Fault;
 use crate::geometry::{Ray, surrounds};
@@ -193,27 +196,63 @@ impl Terrain {
         })
     }
 
-    /// The height of the pixel that a place lies in; `None` where there is none.
-    pub fn height(&self, place: DVec2) -> Option<f64> {
+    /// The pixel that a place lies in; `None` off the raster.
+    fn pixel_at(&self, place: DVec2) -> Option<[u32; 2]> {
         let at = self.raster.pixel_from_world(place).floor();
         let inside = at.cmpge(DVec2::ZERO).all()
             && at.x < f64::from(self.raster.columns)
             && at.y < f64::from(self.raster.rows);
         // `as` is exact: it lies inside.
-        Some(self.point(at.x as u32, at.y as u32).filter(|_| inside)?.z)
+        inside.then_some([at.x as u32, at.y as u32])
+    }
+
+    /// The height of the pixel that a place lies in; `None` where there is none.
+    pub fn height(&self, place: DVec2) -> Option<f64> {
+        Some(self.point_of(&self.heights, self.pixel_at(place)?)?.z)
     }
 
     /// How far a point in the air is from the ground, where that is nearer than `within`; else that. The ground is solid
     /// from the highest of each pixel downwards, so that the face of a wall between two pixels is as near as the wall; pixels
     /// count as near as their nearest corner.
     pub fn clearance(&self, point: DVec3, within: f64) -> f64 {
-        let corner = self.raster.pixel * FRAC_1_SQRT_2;
-        self.tops_around(point.truncate(), within + corner)
-            .map(|top| {
-                let beside = (top.truncate().distance(point.truncate()) - corner).max(0.0);
-                beside.hypot((point.z - top.z).max(0.0))
-            })
+        self.tops_beside(point.truncate(), within)
+            .map(|(beside, top)| beside.hypot((point.z - top).max(0.0)))
             .fold(within, f64::min)
+    }
+
+    /// How far a place of the map is from the nearest of the surface; 0 where some lies under it.
+    pub(super) fn distance_beyond(&self, place: DVec2) -> f64 {
+        if self.is_over_surface(place) {
+            return 0.0;
+        }
+        let [min, max] = self.raster.bounds();
+        // Nothing of it is farther.
+        let most = place.distance(min).max(place.distance(max)) + min.distance(max);
+        let mut reach = 4.0 * self.raster.pixel;
+        loop {
+            let beside = self.tops_beside(place, reach).map(|(beside, _)| beside);
+            let nearest = beside.fold(most, f64::min);
+            // What is nearer than the reach is among what was looked at.
+            if nearest <= reach || reach >= most {
+                return nearest;
+            }
+            reach *= 2.0;
+        }
+    }
+
+    /// Whether some of the surface lies in the pixel of a place.
+    pub(super) fn is_over_surface(&self, place: DVec2) -> bool {
+        let pixel = self.pixel_at(place);
+        pixel.is_some_and(|pixel| self.point_of(&self.tops, pixel).is_some())
+    }
+
+    /// How far, level, tops around a place are from it, and how high they are: all that are nearer than `within`, and some more.
+    fn tops_beside(&self, place: DVec2, within: f64) -> impl Iterator<Item = (f64, f64)> {
+        let corner = self.raster.pixel * FRAC_1_SQRT_2;
+        self.tops_around(place, within + corner).map(move |top| {
+            let beside = (top.truncate().distance(place) - corner).max(0.0);
+            (beside, top.z)
+        })
     }
 
     /// Whether a point in the air is nearer than `clearance` to the ground, or in it.
@@ -305,7 +344,7 @@ impl Terrain {
 }
 
 /// Places from one to the other, at most so far apart.
-fn along(from: DVec3, to: DVec3, step: f64) -> impl Iterator<Item = DVec3> {
+pub(super) fn along(from: DVec3, to: DVec3, step: f64) -> impl Iterator<Item = DVec3> {
     let count = (from.distance(to) / step).ceil().max(1.0);
     // `as` saturates; legs are kilometres at most.
     (0..=count as u64).map(move |step| from.lerp(to, step as f64 / count))
