@@ -148,6 +148,25 @@ impl<R: Read + Seek> TiffFile<R> {
         None
     }
 
+    /// Whether another image of the same size follows, which is neither an overview nor a mask. The tags are those of another
+    /// directory afterwards.
+    pub fn has_another(&mut self, image: &Layout) -> bool {
+        for _ in 1..MOST_DIRECTORIES {
+            if !self.decoder.more_images() || self.decoder.next_image().is_err() {
+                return false;
+            }
+            let is_image = subfile(&mut self.decoder) & (REDUCED | MASK) == 0;
+            if is_image
+                && self
+                    .size()
+                    .is_ok_and(|size| size == (image.width, image.height))
+            {
+                return true;
+            }
+        }
+        false
+    }
+
     /// The bytes of a chunk as they are in the file; `None` where it is left out.
     ///
     /// # Errors

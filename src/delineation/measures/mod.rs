@@ -178,7 +178,7 @@ fn on_surface(field: &ScaleField, x: u32, y: u32) -> Option<f64> {
     let flat = 1.0 / (here.scale * here.scale);
     let area = across.cross(along).length();
     // Steeper than 80 degrees is a step from one fragment to one behind it.
-    (area < 6.0 * flat).then_some(area.max(flat))
+    (area < 6.0 * flat).then_some(area)
 }
 
 /// What is summed over a fragment's pixels.

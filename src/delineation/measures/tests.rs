@@ -114,6 +114,25 @@ fn a_slope_has_more_surface() {
     assert!(of.height.unwrap().abs() < 1e-6, "{of:?}");
 }
 
+/// Where a slope faces an oblique ray its surface is less than a plane across the axis: of 30 by 20 pixels on z = 0.3 x, the
+/// four corners' rays meet the plane in a quadrilateral of that area.
+#[test]
+fn a_slope_that_faces_the_camera_has_less_surface() {
+    let labels =
+        drawn(|x, y| u32::from((360.0..390.0).contains(&x) && (190.0..210.0).contains(&y)));
+    let corner = |u: f64, v: f64| {
+        let ray = DVec3::new((u - 200.0) / 500.0, (200.0 - v) / 500.0, -1.0);
+        DVec3::new(0.0, 0.0, 4.0) + ray * (4.0 / (1.0 + 0.3 * ray.x))
+    };
+    let [a, b] = [corner(360.0, 190.0), corner(390.0, 190.0)];
+    let [c, d] = [corner(390.0, 210.0), corner(360.0, 210.0)];
+    let exact = (c - a).cross(d - b).length() / 2.0;
+    let of = measured(&labels, &field(0.3), SieveShape::Circle)[0].world;
+    let of = of.unwrap();
+    close(of.surface_area, exact, 2e-3);
+    assert!(of.surface_area < 0.96 * of.area, "{of:?}");
+}
+
 /// A ridge z = -|x| / 5 over a square from -a to a: its outline lies at -a / 5 on two sides and at -a / 10 in the mean on
 /// the others, so its plane is level at -3 a / 20, and the ridge stands that high above it; 95 of 100 of its pixels are at least
 /// 5 % of the way down at each side, a / 100 lower.

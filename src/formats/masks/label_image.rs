@@ -197,7 +197,7 @@ fn of_16_bits(number: u16) -> u32 {
     }
 }
 
-/// That of a TIFF: of several samples a pixel, or of several images, the first.
+/// That of a TIFF: of several samples a pixel the first.
 fn tiff(bytes: &[u8], photo: &OutlinedPhoto<'_>, notes: &mut Notes) -> Result<LabelImage, Fault> {
     let mut file = TiffFile::open(Cursor::new(bytes), bytes.len() as u64)?;
     let layout = file.layout()?;
@@ -243,6 +243,11 @@ fn tiff(bytes: &[u8], photo: &OutlinedPhoto<'_>, notes: &mut Notes) -> Result<La
         notes.say(
             "its negative numbers are taken for no rock, and 0 for what is no fragment: if 0 is one of the fragments, number them from 1",
         );
+    }
+    if file.has_another(&layout) {
+        let what = "it is a stack of images, where one is to have the numbers of all fragments";
+        let remedy = "save one label image (in ImageJ the ROIs as labels), or the outlines as COCO or GeoJSON";
+        return Err(Fault::new(what, remedy));
     }
     Ok(labels_of(photo, labels))
 }

@@ -12,7 +12,7 @@ use super::names::{
 use super::names_of_sizes::{refuse_names_of_sizes, unknown};
 use super::raw::{OnSieves, RawCurve, RawPoint};
 use super::retained::{is_no_sieve, is_pan, is_result, is_total, is_washed, names_pan};
-use super::size_text::{SizeText, fraction_of_inches, sieve_mm};
+use super::size_text::{SizeText, bare_fraction, fraction_of_inches, sieve_mm};
 use super::size_unit::SizeUnit;
 use super::unit_above::Above;
 use crate::fault::Fault;
@@ -36,10 +36,18 @@ pub(super) fn read(
         holds_astm_numbers: (table.header().iter())
             .map(|name| holds_sieve_numbers(name) && holds_astm_numbers(name))
             .collect(),
+        fractions_are_of_its_unit: false,
         repairs: Repairs::default(),
     };
     let layout = Layout::of(table, columns)?;
     refuse_names_of_sizes(table, &layout)?;
+    if let Layout::Long { unit, .. } | Layout::Wide { unit, .. } | Layout::Retained { unit, .. } =
+        &layout
+    {
+        let unit = unit.map(|unit| unit.unit).or(columns.unit);
+        let of_inches = [LengthUnit::Millimetre, LengthUnit::Inch];
+        reader.fractions_are_of_its_unit = unit.is_some_and(|unit| !of_inches.contains(&unit));
+    }
     let mut reading = SizeReading {
         header: None,
         given: columns.unit,
@@ -161,6 +169,9 @@ struct Reader<'a> {
     holds_sieve_numbers: Vec<bool>,
     /// Of each column, those whose numbers say which series they are of.
     holds_astm_numbers: Vec<bool>,
+    /// Whether a fraction without a unit is of the unit that is stated of sizes: of feet or metres it is, of millimetres nobody writes
+    /// one, and there it is of inches.
+    fractions_are_of_its_unit: bool,
     repairs: Repairs,
 }
 
@@ -187,6 +198,13 @@ impl Reader<'_> {
                 what,
                 "fill it in, or leave the line out",
             ));
+        }
+        if let (true, Some(number)) = (self.fractions_are_of_its_unit, bare_fraction(cell)) {
+            let number = Some((number, None));
+            return Ok(Some(SizeText {
+                number,
+                sieve_mm: None,
+            }));
         }
         let sieve_mm = match self.holds_astm_numbers.get(column) {
             Some(true) if cell.starts_with(|c: char| c.is_ascii_digit()) => {

@@ -318,6 +318,10 @@ impl OnSieves {
                     rounded(total)
                 )),
                 (Some(_), _) => Ok(each),
+                (None, Some(total)) if self.washed.is_none() && is_near(each, total, 1e-9) => Err((
+                    "the total is the sum of the sieves alone: nothing says how much passed the finest".to_owned(),
+                    "give what is in the pan in a line 'pan' (0 where nothing is)",
+                )),
                 (None, Some(total)) => Ok(total),
                 (None, None) => Err((
                     "nothing says how much passed the finest sieve".to_owned(),

@@ -59,18 +59,28 @@ pub(super) fn fraction_of_inches(cell: &str) -> Option<f64> {
     if !unit.is_empty() && SizeUnit::of(unit) != Some(inch) {
         return None;
     }
-    let (rest, below) = number.trim().split_once('/')?;
-    let (whole, above) = match rest.trim().rsplit_once([' ', '-']) {
-        Some((whole, above)) => (whole.trim().parse::<u32>().ok()?, above),
-        None => (0, rest.trim()),
-    };
-    let (above, below) = (
-        above.parse::<u32>().ok()?,
-        below.trim().parse::<u32>().ok()?,
-    );
+    let (whole, [above, below]) = parts_of_fraction(number)?;
     let is_of_inches =
         below.is_power_of_two() && (2..=64).contains(&below) && (1..below).contains(&above);
     is_of_inches.then(|| f64::from(whole) + f64::from(above) / f64::from(below))
+}
+
+/// A fraction without a unit, of the unit that the column states: "1 1/2", "2/3", "½".
+pub(super) fn bare_fraction(cell: &str) -> Option<f64> {
+    let (whole, [above, below]) = parts_of_fraction(&spelt_out(cell))?;
+    (1..below)
+        .contains(&above)
+        .then(|| f64::from(whole) + f64::from(above) / f64::from(below))
+}
+
+/// The whole, and what stands above and below the line.
+fn parts_of_fraction(number: &str) -> Option<(u32, [u32; 2])> {
+    let (rest, below) = number.trim().split_once('/')?;
+    let (whole, above) = match rest.trim().rsplit_once([' ', '-']) {
+        Some((whole, above)) => (whole.trim().parse().ok()?, above),
+        None => (0, rest.trim()),
+    };
+    Some((whole, [above.parse().ok()?, below.trim().parse().ok()?]))
 }
 
 /// The opening of the sieve of ASTM E11 with that designation: "No. 4", "#4", "3/8 in.", "3/8\"". One that is called by
@@ -90,9 +100,20 @@ fn named_sieve_mm(name: &str) -> Option<f64> {
             .replace('#', "no")
             .replace(['°', 'º'], "o");
         let text = text.replace(['"', '″'], "in").replace("inch", "in");
-        text.chars()
-            .filter(|c| c.is_alphanumeric() || *c == '/')
-            .collect()
+        let mut squeezed = String::new();
+        let mut chars = text.chars().peekable();
+        while let Some(c) = chars.next() {
+            let is_between_digits = squeezed.ends_with(|c: char| c.is_ascii_digit())
+                && chars.peek().is_some_and(char::is_ascii_digit);
+            match c {
+                // "10.6 in" is not 1.06 in.
+                '.' | ',' if is_between_digits => squeezed.push('.'),
+                '/' => squeezed.push(c),
+                _ if c.is_alphanumeric() => squeezed.push(c),
+                _ => {}
+            }
+        }
+        squeezed
     };
     let name = name.trim();
     let is_named =
@@ -127,5 +148,26 @@ mod tests {
         ] {
             assert_eq!(fraction_of_inches(cell), wanted, "{cell}");
         }
+        for (cell, wanted) in [
+            ("1 1/2", Some(1.5)),
+            ("½", Some(0.5)),
+            ("2/3", Some(2.0 / 3.0)),
+            ("1/2 in", None),
+            ("3/2", None),
+        ] {
+            assert_eq!(bare_fraction(cell), wanted, "{cell}");
+        }
+    }
+
+    /// ASTM E11, table 1: 1.06 in. is 26.5 mm; no sieve is called 10.6 in.
+    #[test]
+    fn a_point_in_a_name_counts() {
+        for name in ["1.06 in.", "1,06 in", "1.06\""] {
+            assert_eq!(sieve_mm(name), Some(26.5), "{name}");
+        }
+        for name in ["10.6 in", "106 in", "21.2 in", "42.4\""] {
+            assert_eq!(sieve_mm(name), None, "{name}");
+        }
+        assert_eq!(sieve_mm("No. 4"), Some(4.75));
     }
 }

@@ -307,6 +307,15 @@ impl Table {
         if cell.is_empty() {
             return Ok(None);
         }
+        if let Some(plain) = without_thousands(cell) {
+            if plain.contains(',') {
+                repairs.decimal_comma(row.line);
+            }
+            let number = plain.replace(',', ".").parse::<f64>();
+            return number
+                .map(|number| Some((number, "")))
+                .map_err(|_| self.no_number(row, column));
+        }
         let (number, rest) = split_number(cell);
         let fault = |what: &str, remedy: &str| {
             let name = self.name(column);
@@ -411,6 +420,39 @@ pub(crate) fn read_bounded(path: &Path) -> Result<(String, Option<&'static str>)
 fn too_large() -> Fault {
     let what = format!("it is larger than {} MB", LARGEST >> 20);
     Fault::new(what, "give the table alone")
+}
+
+/// A number whose thousands stand apart as Excel writes them in French and Swiss: "1 450,5" with a narrow or wide blank that does not
+/// break, "1'450". `None` of any other cell.
+fn without_thousands(cell: &str) -> Option<String> {
+    let (whole, decimals) = match cell.find(['.', ',']) {
+        Some(at) => cell.split_at_checked(at)?,
+        None => (cell, ""),
+    };
+    let is_digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let sign = ["-", "+"].into_iter().find(|sign| whole.starts_with(sign));
+    let bare = whole.strip_prefix(['-', '+']).unwrap_or(whole);
+    let between = bare.chars().find(|c| !c.is_ascii_digit())?;
+    if !matches!(
+        between,
+        ' ' | '\u{a0}' | '\u{202f}' | '\u{2009}' | '\'' | '’'
+    ) {
+        return None;
+    }
+    let mut groups = bare.split(between);
+    let first = groups.next()?;
+    let is_grouped = is_digits(first)
+        && first.len() <= 3
+        && !first.starts_with('0')
+        && groups.all(|group| is_digits(group) && group.len() == 3);
+    let is_decimal = decimals.is_empty() || decimals.get(1..).is_some_and(is_digits);
+    (is_grouped && is_decimal).then(|| {
+        format!(
+            "{}{}{decimals}",
+            sign.unwrap_or_default(),
+            bare.replace(between, "")
+        )
+    })
 }
 
 /// A cell's number, with all its points and commas, and what follows it.

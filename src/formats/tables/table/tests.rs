@@ -76,8 +76,8 @@ fn numbers_are_what_they_can_only_be() {
         "1,000,000",
         "1.000,5",
         "1.2.3",
-        "1 000",
-        "1'000",
+        "1 00",
+        "1'0000",
         "x",
         "1x",
         "-",
@@ -119,4 +119,17 @@ fn what_stands_too_much_is_refused() {
             .what
             .contains("over 10000 columns")
     );
+}
+
+/// As Excel writes them in French and in Swiss German.
+#[test]
+fn thousands_that_stand_apart() {
+    let text = "a;b\n1\u{a0}450;1\n1\u{202f}234\u{202f}567,5;2\n1'450.25;3\n-12 000;4\n";
+    let (found, said) = numbers(text).unwrap();
+    let wanted = [1450.0, 1_234_567.5, 1450.25, -12_000.0].map(Some);
+    assert_eq!(found, wanted);
+    assert_eq!(said.len(), 1, "{said:?}");
+    for cell in ["1 45", "0 450", "1 450 5", "1450 000", "1 450'000", "1 4x0"] {
+        assert!(numbers(&format!("a;b\n{cell};1\n")).is_err(), "{cell}");
+    }
 }

@@ -165,6 +165,11 @@ fn what_nobody_can_know_is_refused() {
             "-20 is retained, less than nothing; correct it",
         ),
         (
+            "sieve_mm,each retained g\n40,10\n20,20\ntotal,30\n",
+            2,
+            "the total is the sum of the sieves alone: nothing says how much passed the finest; give what is in the pan in a line 'pan' (0 where nothing is)",
+        ),
+        (
             "sieve_mm,each retained g\n40,10\n20,20\ntotal,25\n",
             3,
             "30 is retained down to this sieve, of 25 in all; correct it",

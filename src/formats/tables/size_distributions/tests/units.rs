@@ -316,3 +316,25 @@ fn names_that_differ_by_their_spelling_are_said() {
     );
     assert_eq!(said.len(), 1, "{said:?}");
 }
+
+/// A fraction under feet is of feet (half a foot is 152.4 mm), under millimetres of inches (12.7 is the sieve of 12.5).
+#[test]
+fn fractions_are_of_the_unit_that_is_stated() {
+    for (text, wanted) in [
+        ("Size (ft),passing\n2,100\n1/2,50\n1/4,20\n", 152.4),
+        ("Size (ft),passing\n2 1/2,100\n1 1/2,50\n3/4,20\n", 457.2),
+        ("Size (mm),passing\n25,100\n1/2,50\n1/4,20\n", 12.5),
+    ] {
+        let found = p50_mm(text);
+        assert!((found / wanted - 1.0).abs() < 1e-6, "{text}: {found}");
+    }
+}
+
+/// No sieve is called so: 10.6 inches beside names of sieves are no 26.5 mm.
+#[test]
+fn inches_with_a_point_are_no_names() {
+    let (set, _) = read("size,passing\n10.6 in,100\n3/4 in,60\n3/8 in,40\nNo. 4,24\n");
+    let top = set.curves[0].distribution.points().last().unwrap()[0];
+    let mm = top * set.unit.in_units_of(LengthUnit::Millimetre);
+    assert!((mm - 269.24).abs() < 1e-9, "{mm}");
+}
