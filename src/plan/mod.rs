@@ -4,7 +4,7 @@
 //! ```text
 //! wish/       what is asked for: scale, pattern, gaps, gimbal, clearance; what is usual; what a flight's file keeps of it
 //! tiles       heights in tiles, which are kept
-//! terrain/    heights on a raster, planes of the ground, how near a point in the air is to it; what of a plan lies beyond it
+//! terrain     heights on a raster, planes of the ground, how near a point in the air is to it
 //! drones      cameras and gimbals that are often flown
 //! area        the ground to be photographed: the pile found by itself
 //! keep_out    the ground that is not flown over, and the way around it
@@ -18,7 +18,7 @@
 //! home        the straight way home that the drone flies by itself
 //! way         the legs between photos, with which climbs; how long they take
 //! order       in which order photos are taken
-//! mission/    what a drone is told, and what came of it
+//! mission/    what a drone is told, what of it lies beyond the surface, and what came of it
 //! ```
 //!
 //! A plan is in the unit and the frame of its surface. It is made in two looks at the ground: the terrain's raster
@@ -58,14 +58,14 @@ pub use drones::Drone;
 pub use forecast::Forecast;
 pub use home::{homes_over_keep_out, lost_signal, return_height, set_height};
 pub use mission::{
-    Above, DroneCodes, Fence, Finish, Flown, Height, LostSignal, Mission, PayloadCodes, PhotoOf,
-    PlannedPose, Residual, Stop, TakeOff, Taken, Told, heading, is_over_ground, missions,
+    Above, Beyond, DroneCodes, Fence, Finish, Flown, Height, LostSignal, Mission, PayloadCodes,
+    PhotoOf, PlannedPose, Residual, Stop, TakeOff, Taken, Told, heading, is_over_ground, missions,
     planned_poses,
 };
 pub use photo::{PlannedPhoto, Purpose, Refused};
 pub use steadiness::{PoseErrors, Positioning};
 pub use sun::{Shadows, Sun};
-pub use terrain::{Beyond, GroundPlane, Terrain, ground_at};
+pub use terrain::{GroundPlane, Terrain, ground_at};
 pub use way::{
     Flying, MOST_SPEED, Pace, USUAL_CLIMB, USUAL_DESCENT, USUAL_SETTLE, USUAL_SPEED, Way, WayPoint,
 };

@@ -8,11 +8,13 @@
 //! paired     which photo is which planned one
 //! ```
 
+mod beyond;
 mod by_itself;
 mod flown;
 mod paired;
 mod told;
 
+pub use beyond::Beyond;
 pub use by_itself::{Finish, LostSignal};
 pub use flown::{Flown, Residual, planned_poses};
 pub use paired::{PlannedPose, Taken};

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use super::{Terrain, along};
+use crate::plan::terrain::{Terrain, along};
 use crate::plan::{Plan, Way};
 
 /// How much of the flight over a plan's photos leads beyond the surface.

@@ -1,15 +1,12 @@
 //! The surface as a drone's pilot needs it: heights on a raster, the plane that the ground is near a place, and how
 //! near a point in the air is to it.
 
-mod beyond;
-
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
-pub use self::beyond::Beyond;
 use super::tiles::Tiles;
 use crate::fault::Fault;
 use crate::geometry::{Ray, surrounds};
