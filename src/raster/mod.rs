@@ -137,10 +137,7 @@ impl<R: Read + Seek> TiffFile<R> {
     /// tags are those of another directory afterwards.
     pub fn mask(&mut self, image: &Layout) -> Option<Layout> {
         for _ in 1..MOST_DIRECTORIES {
-            if !self.decoder.more_images() || self.decoder.next_image().is_err() {
-                return None;
-            }
-            if subfile(&mut self.decoder) & (REDUCED | MASK) == MASK {
+            if self.next_kind()? == MASK {
                 let mask = Layout::of(&mut self.decoder).ok()?;
                 return ((mask.width, mask.height) == (image.width, image.height)).then_some(mask);
             }
@@ -152,19 +149,23 @@ impl<R: Read + Seek> TiffFile<R> {
     /// directory afterwards.
     pub fn has_another(&mut self, image: &Layout) -> bool {
         for _ in 1..MOST_DIRECTORIES {
-            if !self.decoder.more_images() || self.decoder.next_image().is_err() {
+            let Some(kind) = self.next_kind() else {
                 return false;
-            }
-            let is_image = subfile(&mut self.decoder) & (REDUCED | MASK) == 0;
-            if is_image
-                && self
-                    .size()
-                    .is_ok_and(|size| size == (image.width, image.height))
-            {
+            };
+            let has_its_size = self
+                .size()
+                .is_ok_and(|size| size == (image.width, image.height));
+            if kind == 0 && has_its_size {
                 return true;
             }
         }
         false
+    }
+
+    /// Goes to the next directory, and says whether it is an overview or a mask (0: neither); `None` behind the last.
+    fn next_kind(&mut self) -> Option<u32> {
+        let is_there = self.decoder.more_images() && self.decoder.next_image().is_ok();
+        is_there.then(|| subfile(&mut self.decoder) & (REDUCED | MASK))
     }
 
     /// The bytes of a chunk as they are in the file; `None` where it is left out.

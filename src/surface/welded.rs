@@ -45,7 +45,7 @@ pub(super) fn welded_neighbours(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec
         .par_iter()
         .map(|face| (along_curve(face), *face))
         .collect();
-    // The faces themselves tell ties apart: the same order whatever the file's is.
+    // The faces tell ties apart, so the same file gives the same order on every run.
     ordered.par_sort_unstable();
     ordered.into_iter().map(|(_, face)| face).collect()
 }

@@ -206,6 +206,11 @@ fn tiff(bytes: &[u8], photo: &OutlinedPhoto<'_>, notes: &mut Notes) -> Result<La
         let what = "its numbers are compressed as JPEG, which changes them";
         return Err(Fault::new(what, REMEDY));
     }
+    if file.has_another(&layout) {
+        let what = "it is a stack of images, where one is to have the numbers of all fragments";
+        let remedy = "save one label image (in ImageJ the ROIs as labels), or the outlines as COCO or GeoJSON";
+        return Err(Fault::new(what, remedy));
+    }
     let numbers = Number::of(&layout)?;
     let samples = layout.samples_a_chunk();
     if layout.samples > 1 {
@@ -243,11 +248,6 @@ fn tiff(bytes: &[u8], photo: &OutlinedPhoto<'_>, notes: &mut Notes) -> Result<La
         notes.say(
             "its negative numbers are taken for no rock, and 0 for what is no fragment: if 0 is one of the fragments, number them from 1",
         );
-    }
-    if file.has_another(&layout) {
-        let what = "it is a stack of images, where one is to have the numbers of all fragments";
-        let remedy = "save one label image (in ImageJ the ROIs as labels), or the outlines as COCO or GeoJSON";
-        return Err(Fault::new(what, remedy));
     }
     Ok(labels_of(photo, labels))
 }

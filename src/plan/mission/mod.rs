@@ -2,6 +2,7 @@
 //! each in its own way; `formats::missions` reads them, `exports::missions` writes them.
 //!
 //! ```text
+//! beyond     what of its flight lies beyond the surface
 //! by_itself  what the drone does behind the last stop, and where the radio is lost
 //! told       the ways of a plan as missions, in degrees and metres above take-off
 //! flown      planned against flown

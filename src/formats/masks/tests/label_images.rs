@@ -1,6 +1,11 @@
 //! Label images as others write them, and what is wrong with some.
 
+use std::io::Cursor;
+
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Rgb, RgbImage};
+use tiff::encoder::TiffEncoder;
+use tiff::encoder::colortype::Gray8;
+use tiff::tags::Tag;
 
 use super::{of_bytes, png};
 use crate::labels::{FINES, NOT_ROCK};
@@ -233,6 +238,29 @@ fn tiffs_are_read() {
         of_bytes(&half).unwrap_err().what,
         "3.5 is no number of a fragment"
     );
+}
+
+/// As ImageJ writes a mask of each fragment, of which the first was taken for all. Overviews, masks and pages of another size are
+/// no further masks.
+#[test]
+fn stacks_are_refused() {
+    let written = |pages: &[(u32, u32, u32)]| -> Vec<u8> {
+        let mut bytes = Cursor::new(Vec::new());
+        let mut encoder = TiffEncoder::new(&mut bytes).unwrap();
+        for (width, height, kind) in pages {
+            let mut image = encoder.new_image::<Gray8>(*width, *height).unwrap();
+            let kind_of = Tag::NewSubfileType;
+            image.encoder().write_tag(kind_of, *kind).unwrap();
+            let numbers: Vec<u8> = (0..width * height).map(|at| at as u8 * 3).collect();
+            image.write_data(&numbers).unwrap();
+        }
+        bytes.into_inner()
+    };
+    let one = of_bytes(&written(&[(4, 3, 0), (2, 2, 1), (4, 3, 4), (2, 2, 0)])).unwrap();
+    let expected: Vec<u32> = (0..12).map(|at| at * 3).collect();
+    assert_eq!(one.labels.labels, expected);
+    let stack = of_bytes(&written(&[(4, 3, 0), (2, 2, 1), (4, 3, 0)])).unwrap_err();
+    assert!(stack.what.starts_with("it is a stack of images"), "{stack}");
 }
 
 #[test]
