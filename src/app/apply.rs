@@ -24,6 +24,7 @@ const COPIED_SHOWN: usize = 60;
 impl State {
     /// Does what a command says.
     pub fn apply(&mut self, command: Command) {
+        self.kept_aside.touch();
         match command {
             Command::Drop(mut paths) if self.may_be_masks(&paths) => {
                 if let Some(path) = paths.pop() {
@@ -57,6 +58,7 @@ impl State {
                 named: Named::Alone,
             }),
             Command::OpenSample => self.leave(Leaving::Sample),
+            Command::Kept(step) => self.kept_step(step),
             Command::Close => self.leave(Leaving::Close),
             Command::Quit => self.leave(Leaving::Quit),
             Command::Discard => {

@@ -15,6 +15,7 @@
 //! map/                the page of the map
 //! planning/           the page of the flight plan
 //! fragments/          the page of the fragments
+//! kept_aside/         changes that are not saved, kept where a crash leaves them
 //! from_photos         what the small window for a new flight from photos holds
 //! season/             what the small window of a season of blasts holds, and what it does
 //! size_distributions/ the page of size distributions
@@ -33,6 +34,7 @@ mod fonts;
 pub mod fragments;
 pub mod frame_times;
 pub mod from_photos;
+pub mod kept_aside;
 pub mod linked;
 pub mod map;
 mod names;
@@ -67,6 +69,7 @@ use fragscale_render as render;
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 pub use command::Command;
 pub use state::State;
@@ -74,12 +77,16 @@ pub use state::State;
 use command::Asking;
 use flight::Verdict;
 use frame_times::{FrameTimes, Phase};
+use kept_aside::KeptAside;
 use open_flight::OpenFlight;
 use panels::{Inspector, PhotoPanel, Scrolled};
 use photo_view::Middle;
 use size_distributions::{DistributionCommand, Page, PasteForm, ResultTab};
 use state::{Leaving, Severity};
 use viewport::Viewport;
+
+/// Under which name the system knows the program, and keeps its folder.
+const APP_ID: &str = "fragscale";
 
 /// Under which name eframe keeps the preferences.
 const PREFERENCES: &str = "preferences";
@@ -121,6 +128,10 @@ impl App {
         let mut state = State::new(context.egui_ctx.clone(), preferences);
         let viewport = Viewport::new(context.wgpu_render_state.as_ref());
         state.gpu = viewport.gpu().cloned();
+        // Where the preferences are not kept nothing else is.
+        if let Some(own) = context.storage.and_then(|_| eframe::storage_dir(APP_ID)) {
+            state.kept_aside = KeptAside::in_folder(own.join("unsaved"), None);
+        }
         let times = std::env::var_os("FRAGSCALE_FRAME_TIMES").map(PathBuf::from);
         let times = FrameTimes::into_file(times.as_deref()).unwrap_or_else(|error| {
             state.say(Severity::Error, &format!("no frame times: {error}"));
@@ -150,6 +161,11 @@ impl App {
     /// Does something, as a panel would.
     pub fn apply(&mut self, command: Command) {
         self.state.apply(command);
+    }
+
+    /// Keeps changes that are not saved aside in this folder, at once, and offers what was left there.
+    pub fn keep_aside_in(&mut self, root: PathBuf) {
+        self.state.kept_aside = KeptAside::in_folder(root, Some(Duration::ZERO));
     }
 
     /// Takes what jobs have brought, without drawing.
@@ -264,6 +280,7 @@ impl eframe::App for App {
         let mut commands = Vec::new();
         let (state, out) = (&self.state, &mut commands);
         egui::Panel::top("menu").show(ui, |ui| panels::menu_bar(state, ui, out));
+        panels::kept_aside(state, ui, out);
         if state.open.is_some() || state.page == Page::SizeDistributions {
             egui::Panel::top("tools").show(ui, |ui| panels::tool_bar(state, ui, out));
         }
@@ -408,6 +425,10 @@ impl eframe::App for App {
         self.times.end(Phase::Commands);
     }
 
+    fn on_exit(&mut self) {
+        self.state.kept_aside.end();
+    }
+
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, PREFERENCES, &self.state.preferences);
     }
@@ -528,7 +549,7 @@ pub fn run(paths: Vec<PathBuf>) -> Result<(), String> {
         ..Default::default()
     };
     eframe::run_native(
-        "fragscale",
+        APP_ID,
         options,
         Box::new(|context| Ok(Box::new(App::new(context, paths)))),
     )

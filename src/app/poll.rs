@@ -55,6 +55,7 @@ impl State {
         }
         self.look_at_values();
         self.upload_beside();
+        self.keep_aside();
         if !self.work.is_idle() {
             // Idle windows draw nothing. A dialog can take minutes.
             let all = |is: &dyn Fn(Task) -> bool| self.work.running().all(|(task, _)| is(task));

@@ -37,7 +37,7 @@ impl State {
     /// one stays as it came.
     pub(crate) fn read_beside(&self, path: &Path) -> Inputs {
         let read = self.read();
-        let Some(open) = self.open.as_ref().filter(|open| !open.files.bundled) else {
+        let Some(open) = self.open.as_ref().filter(|open| !open.files.stays()) else {
             return read;
         };
         let files = [

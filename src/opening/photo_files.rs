@@ -169,7 +169,11 @@ pub(crate) fn fit_cameras_to_files(
             .iter()
             .zip(&sizes)
             .filter(|(photo, _)| photo.camera == index);
-        let Some(size) = most_common(of_camera.filter_map(|(_, size)| *size)) else {
+        let of_its_shape = of_camera
+            .filter_map(|(_, size)| *size)
+            .filter(|(width, height)| camera.rescaled(*width, *height).is_ok());
+        // Where no file has its shape, the camera stays as it is, and each photo says why it has no scale.
+        let Some(size) = most_common(of_its_shape) else {
             continue;
         };
         let (width, height) = (camera.width, camera.height);
@@ -334,6 +338,30 @@ mod tests {
                 .unwrap()
                 .contains("another shape")
         );
+    }
+
+    /// Photos of another camera in the same folder, however many, take no scale from those of the camera's shape.
+    #[test]
+    fn files_of_another_shape_say_nothing_of_the_camera() {
+        let files = [(400, 300), (400, 300), (100, 50), (200, 100), (200, 100)];
+        let (camera, photos, ..) = fit((100, 50), &files);
+        assert_eq!(camera.width, 200);
+        let told = |word: &str| -> Vec<bool> {
+            let troubles = photos.iter().map(|photo| photo.trouble.as_deref());
+            troubles
+                .map(|trouble| trouble.is_some_and(|trouble| trouble.contains(word)))
+                .collect()
+        };
+        assert_eq!(
+            told("another shape"),
+            [true, true, false, false, false, false]
+        );
+        assert_eq!(
+            told("other photos of its camera"),
+            [false, false, true, false, false, false]
+        );
+        let (camera, ..) = fit((100, 50), &[(400, 300), (80, 70)]);
+        assert_eq!(camera.width, 100);
     }
 
     /// Cropped or made smaller: the file does not tell.

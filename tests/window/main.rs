@@ -37,6 +37,7 @@ mod fragments;
 mod from_photos;
 mod georeference;
 mod health;
+mod kept_aside;
 mod keyboard;
 mod large_clouds;
 mod linked;

@@ -20,6 +20,7 @@ use crate::flight::{DecisionKind, FlightSettings, Limits, Verdict};
 use crate::fragments::FragmentStep;
 use crate::from_photos::FromPhotosStep;
 use crate::geometry::Ray;
+use crate::kept_aside::KeptStep;
 use crate::linked::PointFrom;
 use crate::map::MapCommand;
 use crate::open_flight::beside::BesideStep;
@@ -85,6 +86,8 @@ pub enum Command {
     OpenAlone(PathBuf),
     /// Opens the bundled flight.
     OpenSample,
+    /// A step with changes that a window left behind.
+    Kept(KeptStep),
     /// Goes back to the start page.
     Close,
     /// Writes flight.toml.

@@ -20,7 +20,7 @@ impl OpenFlight {
     pub(crate) fn control_to_save(&self, path: &Path) -> Option<ControlToSave> {
         let list = self.control_list();
         let own = self.files.origin.flight_file();
-        let is_own = !self.files.bundled && own.is_some_and(|own| files::is_same_file(own, path));
+        let is_own = !self.files.stays() && own.is_some_and(|own| files::is_same_file(own, path));
         let is_wanted = match is_own {
             true => *list != self.files.saved.control,
             false => !list.is_empty(),

@@ -254,6 +254,12 @@ impl Fragments {
         self.photos.values().any(PhotoOutlines::is_changed)
     }
 
+    /// Photos with outlines on the screen, and their revisions.
+    pub(crate) fn revisions(&self) -> Vec<(usize, u64)> {
+        let photos = self.photos.iter().filter(|(_, of)| !of.is_nothing());
+        photos.map(|(photo, of)| (*photo, of.revision)).collect()
+    }
+
     /// Half the width of the brush, pixels of the photo.
     pub fn brush_radius(&self) -> f64 {
         match self.brush {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use crate::files::Inputs;
 use crate::flight::FlightSettings;
+use crate::kept_aside::KeptOf;
 use crate::opening::{FlightOrigin, FlightReconstruction, OpenOptions, Opened, PhotoFile};
 use crate::state::bundled::sample_flight;
 use crate::surface::UpAxis;
@@ -38,6 +39,8 @@ pub struct FlightFiles {
     pub reconstruction: Option<FlightReconstruction>,
     /// Whether it is the flight that comes with the program, which stays as it came.
     pub bundled: bool,
+    /// Whose changes it holds, where a window left them behind.
+    pub kept: Option<KeptOf>,
     /// The settings in its flight.toml.
     pub saved: FlightSettings,
     /// The files that saving writes, as they were read or saved last.
@@ -58,6 +61,8 @@ impl FlightFiles {
         // They are in a file of their own.
         saved.control.clone_from(&opened.settings.control);
         let bundled = is_bundled(&opened.origin.suggested_file());
+        let kept = opened.origin.flight_file().and_then(KeptOf::beside);
+        let stays = bundled || kept.is_some();
         let mut stood = Stood::default();
         if let Some(own) = opened.origin.flight_file() {
             stood.note_flight(own);
@@ -77,15 +82,39 @@ impl FlightFiles {
             inputs: opened.inputs,
             read: opened.read,
             warnings: opened.warnings,
-            opened_file: opened.file.map(|(path, _)| path).filter(|_| !bundled),
+            opened_file: opened.file.map(|(path, _)| path).filter(|_| !stays),
             origin: opened.origin,
             reconstruction: opened.reconstruction,
             bundled,
+            kept,
             saved,
             stood,
             read_as,
             said_changed: HashSet::new(),
         }
+    }
+}
+
+impl FlightFiles {
+    /// Whether its flight.toml stays as it came: saving asks where to.
+    pub fn stays(&self) -> bool {
+        self.bundled || self.kept.is_some()
+    }
+
+    /// Where something is written if nobody says otherwise: `name` beside the flight's file, without a
+    /// name that file. The bundled flight stays as it came: what is made of it goes to where the program
+    /// was started.
+    pub fn proposed(&self, name: Option<&str>) -> PathBuf {
+        let file = match &self.kept {
+            Some(kept) => kept.file.clone(),
+            None => self.origin.suggested_file(),
+        };
+        let start = match name {
+            _ if self.bundled => PathBuf::from(name.unwrap_or("sample-flight.toml")),
+            Some(name) => file.with_file_name(name),
+            None => file,
+        };
+        std::path::absolute(&start).unwrap_or(start)
     }
 }
 

@@ -332,7 +332,7 @@ impl OpenFlight {
         if self.files.origin.is_surface_in_no_flight() {
             return self.planning.is_lost();
         }
-        self.is_edited() || self.files.origin.has_other_files()
+        self.is_edited() || self.files.origin.has_other_files() || self.files.kept.is_some()
     }
 
     /// Whether settings, plan or outlines are not saved.

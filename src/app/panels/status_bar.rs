@@ -5,7 +5,7 @@ use crate::command::Command;
 use crate::names;
 use crate::open_flight::Measure;
 use crate::size_distributions::Page;
-use crate::state::{Severity, State};
+use crate::state::State;
 
 /// How long the bar of a job is, points.
 const BAR: f32 = 90.0;
@@ -67,12 +67,7 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
         }
         jobs(state, ui, commands);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let warnings = state
-                .log
-                .iter()
-                .filter(|line| line.severity != Severity::Note)
-                .count();
-            let text = match warnings {
+            let text = match state.warnings().count() {
                 0 => "Log".to_owned(),
                 1 => "Log: 1 warning".to_owned(),
                 many => format!("Log: {many} warnings"),

@@ -14,6 +14,7 @@ use crate::flight::FlightSettings;
 use crate::formats::Candidate;
 use crate::fragments::Network;
 use crate::from_photos::FromPhotos;
+use crate::kept_aside::KeptAside;
 use crate::open_flight::OpenFlight;
 use crate::opening::OpenOptions;
 use crate::opening_preview::OpeningPreview;
@@ -110,6 +111,8 @@ pub struct State {
     pub page: Page,
     /// What is in the middle of the page of the pile.
     pub middle: Middle,
+    /// Changes that are not saved, where a crash leaves them.
+    pub kept_aside: KeptAside,
     /// The size distributions, with or without a flight.
     pub distributions: SizeDistributions,
     /// The network of hers that can outline fragments.
@@ -118,6 +121,8 @@ pub struct State {
     pub work: Work<State>,
     /// What was said, oldest first.
     pub log: Vec<LogLine>,
+    /// How many of its lines are of what was on the screen before this flight.
+    log_before: usize,
     /// The last error, shown over the viewport until it is put away.
     pub notice: Option<LogLine>,
     /// The tab of the right panel.
@@ -165,9 +170,11 @@ impl State {
             open: None,
             page: Page::default(),
             middle: Middle::default(),
+            kept_aside: KeptAside::default(),
             distributions: SizeDistributions::default(),
             network: Network::default(),
             log: Vec::new(),
+            log_before: 0,
             notice: None,
             tab: Tab::default(),
             asking: None,
@@ -203,8 +210,20 @@ impl State {
         }
         if self.log.len() == LOG_LINES {
             self.log.remove(0);
+            self.log_before = self.log_before.saturating_sub(1);
         }
         self.log.push(line);
+    }
+
+    /// Another flight comes onto the screen: what was said until now is not of it.
+    pub(crate) fn begin_log_of_flight(&mut self) {
+        self.log_before = self.log.len();
+    }
+
+    /// The warnings and errors of the flight on the screen.
+    pub fn warnings(&self) -> impl Iterator<Item = &LogLine> {
+        let of_flight = self.log.iter().skip(self.log_before);
+        of_flight.filter(|line| line.severity != Severity::Note)
     }
 
     /// Whether the flight's settings are not saved.
@@ -230,5 +249,29 @@ impl State {
             Theme::Light => egui::ThemePreference::Light,
             Theme::Dark => egui::ThemePreference::Dark,
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn warnings_are_of_the_flight_on_the_screen() {
+        let mut state = State::new(egui::Context::default(), Preferences::default());
+        state.say(Severity::Warning, "of the flight before");
+        state.begin_log_of_flight();
+        assert_eq!(state.warnings().count(), 0);
+        state.say(Severity::Warning, "its poses are turned");
+        state.say(Severity::Note, "read");
+        state.say(Severity::Error, "not written");
+        assert_eq!(state.warnings().count(), 2);
+        // The oldest lines go, first those of the flight before.
+        for _ in 0..LOG_LINES - 2 {
+            state.say(Severity::Note, "read again");
+        }
+        assert_eq!(state.log.len(), LOG_LINES);
+        let said: Vec<&str> = state.warnings().map(|line| line.text.as_str()).collect();
+        assert_eq!(said, ["not written"]);
     }
 }

@@ -157,7 +157,7 @@ impl State {
         };
         if again.is_none() {
             self.work.cancel_for_flight();
-            self.preferences.remember(&loaded.path);
+            self.begin_log_of_flight();
         }
         for warning in loaded.opened.all_warnings() {
             // Read again with other settings, a file can have something new to say.
@@ -173,6 +173,10 @@ impl State {
         let read_with = loaded.opened.settings.clone();
         let limits = self.preferences.limits;
         let mut open = Box::new(OpenFlight::new(self.opened, loaded, &limits));
+        // What was kept aside is there but once.
+        if again.is_none() && open.files.kept.is_none() {
+            self.preferences.remember(&open.files.path);
+        }
         if let Some(before) = again {
             for gone in open.keep_from(before) {
                 self.say(Severity::Warning, &gone);
@@ -289,6 +293,7 @@ impl OpenFlight {
         self.files.opened_file.clone_from(&before.files.opened_file);
         self.files.read.extend(&before.files.read);
         self.files.bundled = before.files.bundled;
+        self.files.kept.clone_from(&before.files.kept);
         // The settings are those of before, whoever changed the file meanwhile.
         self.files.stood = before.files.stood.clone();
         self.colors.keep_limits(&before.colors);

@@ -23,8 +23,8 @@ impl State {
             return;
         };
         match open.files.origin.flight_file() {
-            // The bundled flight stays as it came.
-            Some(path) if !open.files.bundled => {
+            // The bundled flight stays as it came, and what was kept aside is saved where it was.
+            Some(path) if !open.files.stays() => {
                 let path = path.to_owned();
                 self.save_as(path.into());
             }
@@ -55,7 +55,7 @@ impl State {
         if self.open.is_none() || self.is_busy(Task::SAVE) {
             return;
         }
-        let own = self.open.as_ref().filter(|open| !open.files.bundled);
+        let own = self.open.as_ref().filter(|open| !open.files.stays());
         let own = own.and_then(|open| open.files.origin.flight_file());
         if own.is_some_and(|own| files::is_same_file(own, &to.path)) {
             if to.replace || !self.asks_for_changed(&to) {
@@ -179,7 +179,7 @@ impl State {
                 // They stand in the file now.
                 open.files.options = OpenOptions::default();
             }
-            open.files.bundled = false;
+            (open.files.bundled, open.files.kept) = (false, None);
             if let Some(path) = origin.flight_file() {
                 open.files.read.add(path);
             }

@@ -6,20 +6,22 @@
 //! what their neighbours predict, each as likely as the photo shows of it: at a rim some of them are far. Some places lie in gaps
 //! besides, in which no point is (`unseen`).
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use super::LEAST_POINTS;
 use super::draws::{Draws, deviation, interval_of};
+use super::stratified::stratified;
 use super::surface_error::{DepthError, root_mean_square, tan_of_incidence};
 use super::unseen::Unseen;
 use super::{Interval, UncertainPhoto};
 use crate::geometry::Ray;
-use crate::scale::CornerOutcome;
 use crate::scale::field::clipped;
 use crate::scale::pyramid::{Pyramid, inward};
+use crate::scale::{CornerOutcome, StatedErrors};
 use crate::surface::{Cloud, Surface};
 
-/// How many times errors are drawn: the ends of a 95 % interval are then known to a tenth of its half.
+/// How many times errors are drawn: the ends of a 95 % interval are then known to a tenth of its half, or better where
+/// what is stated outweighs the roughness ([`stratified`]).
 const DRAWS: usize = 400;
 
 /// From where the draws follow.
@@ -44,13 +46,15 @@ pub(super) struct CornerDraws {
     pub(super) known: [bool; 4],
 }
 
-/// What is drawn once for all corners.
+/// What is drawn once for all parts.
 struct Shared {
     /// Of the camera's centre, in its axes.
     moved: DVec3,
     turned: DMat3,
     focal: f64,
     world: f64,
+    /// Of each corner along its ray, in the flight's unit: as the surface states it.
+    surface: [f64; 4],
 }
 
 /// Which errors have a part.
@@ -96,29 +100,9 @@ impl CornerDraws {
             surface: is_seen || stated.surface.is_some(),
             world: stated.world_scale.is_some(),
         };
-        let mut draws = Draws::new(SEED);
         let camera_from_world = photo.field.pose().rotation.transpose();
-        let shared: Vec<Shared> = (0..DRAWS)
-            .map(|_| {
-                let position = stated.pose.position.unwrap_or(DVec3::ZERO) * draws.normals();
-                let angle = stated
-                    .pose
-                    .angle
-                    .unwrap_or(DVec3::ZERO)
-                    .map(f64::to_radians);
-                let percent = |percent: Option<f64>, normal: f64| {
-                    1.0 + percent.unwrap_or(0.0) / 100.0 * normal
-                };
-                Shared {
-                    moved: camera_from_world * position,
-                    turned: DMat3::from_quat(glam::DQuat::from_scaled_axis(
-                        angle * draws.normals(),
-                    )),
-                    focal: percent(stated.focal, draws.normal()).max(0.1),
-                    world: percent(stated.world_scale, draws.normal()).max(0.1),
-                }
-            })
-            .collect();
+        let shared = drawn_errors(stated, camera_from_world);
+        let mut draws = Draws::new(SEED);
         let corners: [Option<Around>; 4] = std::array::from_fn(|index| {
             let corner = &photo.scale.corners[index];
             let CornerOutcome::OnSurface { distance, .. } = corner.outcome else {
@@ -218,6 +202,25 @@ impl CornerDraws {
         let drawn = self.all.get(edge).filter(|drawn| !drawn.is_empty())?;
         Some(interval_of(drawn.clone(), scale?))
     }
+}
+
+/// Draws of what is stated, turned into the camera's axes.
+fn drawn_errors(stated: &StatedErrors, camera_from_world: DMat3) -> Vec<Shared> {
+    let position = stated.pose.position.unwrap_or(DVec3::ZERO);
+    let angle = stated.pose.angle.unwrap_or(DVec3::ZERO);
+    let angle = angle.map(f64::to_radians);
+    let factor = |percent: Option<f64>, normal: f64| {
+        let factor = 1.0 + percent.unwrap_or(0.0) / 100.0 * normal;
+        factor.max(0.1)
+    };
+    let of_draw = |[x, y, z, a, b, c, focal, world, surface @ ..]: [f64; 12]| Shared {
+        moved: camera_from_world * (position * DVec3::new(x, y, z)),
+        turned: DMat3::from_quat(DQuat::from_scaled_axis(angle * DVec3::new(a, b, c))),
+        focal: factor(stated.focal, focal),
+        world: factor(stated.world_scale, world),
+        surface: surface.map(|normal: f64| stated.surface.unwrap_or(0.0) * normal),
+    };
+    stratified(DRAWS, SEED).into_iter().map(of_draw).collect()
 }
 
 /// The depth errors of the points nearest to a corner, each as likely as the photo shows the triangles at it: a corner lies
@@ -376,7 +379,7 @@ fn edges_under(
             }
             if parts.surface {
                 let error = corner.errors.draw(draws).unwrap_or(0.0);
-                let stated = photo.errors.surface.unwrap_or(0.0) * draws.normal();
+                let stated = drawn.surface[index];
                 let gap = unseen.gap(corner.tan_of_incidence, draws) * corner.roughness;
                 along = along * (1.0 + error + gap) + stated / direction.length();
             }

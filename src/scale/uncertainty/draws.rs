@@ -54,9 +54,13 @@ impl Draws {
 /// The share of draws that an interval holds.
 const HELD: f64 = 0.95;
 
-/// The tails, on either side, that a standard deviation is not taken from: a point that flies above the
+/// The tails, on either side, of which the outermost do not count for a standard deviation: a point that flies above the
 /// pile would make it say nothing of the other draws.
 const TAIL: f64 = 0.005;
+
+/// How many times as far from the middle as where a tail begins draws count: of normal ones that is 3.9 standard deviations, beyond
+/// which lies one of ten thousand.
+const FAR: f64 = 1.5;
 
 /// The standard deviation and the interval of draws of a quantity, and what was estimated of it.
 ///
@@ -123,15 +127,20 @@ fn ends(below: f64) -> (f64, f64) {
     }
 }
 
-/// The standard deviation of sorted draws, those in the tails moved to where the tails begin; 0 of none.
+/// The standard deviation of sorted draws, those far out in the tails moved nearer; 0 of none.
 pub(super) fn deviation(sorted: &[f64]) -> f64 {
     let cut = (sorted.len() as f64 * TAIL) as usize;
-    let (Some(&low), Some(&high)) = (
+    let (Some(&low), Some(&middle), Some(&high)) = (
         sorted.get(cut),
+        sorted.get(sorted.len() / 2),
         sorted.get(sorted.len().wrapping_sub(cut + 1)),
     ) else {
         return 0.0;
     };
+    let (low, high) = (
+        middle + FAR * (low - middle),
+        middle + FAR * (high - middle),
+    );
     let count = sorted.len() as f64;
     let mean = sorted.iter().map(|x| x.clamp(low, high)).sum::<f64>() / count;
     let squares: f64 = sorted

@@ -16,6 +16,7 @@ mod line;
 mod moved;
 mod pixels;
 mod point_noise;
+mod stratified;
 mod surface_error;
 mod unseen;
 

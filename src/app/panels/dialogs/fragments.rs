@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use super::proposed;
 use crate::command::{Command, Dialog};
 use crate::fragments::FragmentStep;
 use crate::panels::path_field::taken_path;
@@ -105,7 +104,7 @@ pub(super) fn export_fragments(state: &State, ui: &mut egui::Ui, commands: &mut 
         state.preferences.unit()
     ));
     let browse = [("Browse…", Dialog::folder("Folder for the fragments"))];
-    let start = proposed(open, Some("fragment-sizes"));
+    let start = open.files.proposed(Some("fragment-sizes"));
     if let Some(path) = taken_path(state, ui, &start, &browse, "Write results", commands) {
         commands.push(Command::Fragments(FragmentStep::Export(path.into())));
     }

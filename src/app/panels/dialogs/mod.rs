@@ -14,7 +14,7 @@ mod residuals;
 mod save_measured;
 mod season;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::command::{Answers, Asking, Command, Dialog, MeasuredTable, PictureRequest};
 use crate::map::MapCommand;
@@ -280,19 +280,6 @@ fn replace(command: &Command, question: &str, ui: &mut egui::Ui, commands: &mut 
     });
 }
 
-/// Where something is written if nobody says otherwise: `name` beside the flight's file, without a
-/// name that file. The bundled flight stays as it came: what is made of it goes to where the program
-/// was started.
-fn proposed(open: &OpenFlight, name: Option<&str>) -> PathBuf {
-    let file = open.files.origin.suggested_file();
-    let start = match name {
-        _ if open.files.bundled => PathBuf::from(name.unwrap_or("sample-flight.toml")),
-        Some(name) => file.with_file_name(name),
-        None => file,
-    };
-    std::path::absolute(&start).unwrap_or(start)
-}
-
 fn open(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.label(
         "A flight.toml, a file or folder that a photogrammetry package wrote, or a folder of photos \
@@ -372,7 +359,7 @@ fn export(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
          GeoJSON.",
         open.review.count()
     ));
-    let start = proposed(open, Some("split-desktop"));
+    let start = open.files.proposed(Some("split-desktop"));
     let browse = [("Browse…", Dialog::folder("Export for Split-Desktop into"))];
     let (path, entered) = path_field(state, ui, &start, &browse, commands);
     let mut rectified = state.preferences.export_rectified;
@@ -403,7 +390,7 @@ fn save_as(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.label(
         "The flight's settings and where its files are; the files themselves stay as they are.",
     );
-    let start = proposed(open, None);
+    let start = open.files.proposed(None);
     let browse = [("Browse…", Dialog::new_file("Save flight", "flight.toml"))];
     if let Some(path) = path_to_write(state, ui, &start, &browse, "Save flight", commands) {
         commands.push(Command::SaveAs(path.into()));
@@ -437,7 +424,7 @@ fn picture(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         ui.radio_value(&mut options.3, true, "The corner-ray figure");
     });
     ui.data_mut(|data| data.insert_temp(id, options));
-    let start = proposed(open, Some("figure.png"));
+    let start = open.files.proposed(Some("figure.png"));
     let browse = [("Browse…", Dialog::new_file("Save picture", "figure.png"))];
     if let Some(path) = path_to_write(state, ui, &start, &browse, "Write picture", commands) {
         commands.push(Command::Picture(PictureRequest {
@@ -470,7 +457,7 @@ fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     {
         ui.weak("The line or polygon that is measured goes along.");
     }
-    let start = proposed(open, Some("map.pdf"));
+    let start = open.files.proposed(Some("map.pdf"));
     let browse = [("Browse…", Dialog::new_file("Export map", "map.pdf"))];
     if let Some(path) = path_to_write(state, ui, &start, &browse, "Write map", commands) {
         let to = path.into();

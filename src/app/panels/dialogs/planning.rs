@@ -1,6 +1,5 @@
 //! Where mission and table of the flight plan go.
 
-use super::proposed;
 use crate::command::{Command, Dialog};
 use crate::panels::path_field::path_to_write;
 use crate::planning::PlanStep;
@@ -18,7 +17,7 @@ pub(super) fn mission(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comma
     if drone.and_then(|drone| drone.codes).is_none() {
         ui.weak("DJI's files name the drone: for .kmz choose one of DJI's as the camera.");
     }
-    let start = proposed(open, Some("mission.kmz"));
+    let start = open.files.proposed(Some("mission.kmz"));
     let browse = [("Browse…", Dialog::new_file("Save mission", "mission.kmz"))];
     if let Some(path) = path_to_write(state, ui, &start, &browse, "Write mission", commands) {
         commands.push(Command::Plan(PlanStep::SaveMission(path.into())));
@@ -67,7 +66,7 @@ pub(super) fn plan_table(
         ),
     };
     ui.label(what);
-    let start = proposed(open, Some(name));
+    let start = open.files.proposed(Some(name));
     let browse = [("Browse…", dialog)];
     if let Some(path) = path_to_write(state, ui, &start, &browse, write, commands) {
         let to = path.into();

@@ -3,7 +3,6 @@
 
 use std::path::{Path, PathBuf};
 
-use super::proposed;
 use crate::command::{Command, Dialog, MeasuredTable};
 use crate::panels::path_field::{path_to_write, taken_path};
 use crate::state::State;
@@ -32,7 +31,7 @@ pub(super) fn save_measured(
         ),
     };
     ui.label(what);
-    let start = proposed(open, Some(table.file_name()));
+    let start = open.files.proposed(Some(table.file_name()));
     let browse = [("Browse…", dialog)];
     if let Some(path) = path_to_write(state, ui, &start, &browse, "Write table", commands) {
         commands.push(Command::SaveMeasured(table, path.into()));

@@ -1,0 +1,204 @@
+//! Changes that are not saved are kept aside: a machine that loses its power takes half a minute's corrections along, and not an hour's.
+//!
+//! ```text
+//! folder   where they lie, and whether their window is gone
+//! keeping  writes them, as a job, half a minute after a change
+//! ```
+//!
+//! They lie where the preferences are, in a folder `unsaved`: a flight.toml with what saving writes beside it. Saved or
+//! discarded, they go. What a window left behind that ended badly is offered by the next one (`panels/kept_aside.rs`): opened it is a
+//! flight with changes, which is saved where it was.
+
+mod folder;
+mod keeping;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use chrono::{DateTime, Local};
+
+use self::folder::KeptFolder;
+pub use self::folder::KeptOf;
+use self::keeping::Kept;
+use crate::files;
+use crate::open_flight::OpenFlight;
+use crate::state::{Leaving, Named, State};
+
+/// After a change it is kept aside so much later, with all that came meanwhile.
+const AFTER: Duration = Duration::from_secs(30);
+
+/// What is kept aside, and what was found that windows before this one had kept.
+#[derive(Debug)]
+pub struct KeptAside {
+    /// Where; `None` keeps nothing.
+    root: Option<PathBuf>,
+    /// How long after a change.
+    after: Duration,
+    /// What windows that ended badly left.
+    left: Vec<Left>,
+    /// This window's folder, once there is something in it.
+    own: Option<Arc<KeptFolder>>,
+    /// What it holds.
+    kept: Option<Kept>,
+    /// Whether anything was done since.
+    is_touched: bool,
+    /// When it is written.
+    due: Option<Instant>,
+    /// Whether it was said that it cannot be.
+    has_failed: bool,
+}
+
+/// Changes that another window left behind.
+#[derive(Debug)]
+struct Left {
+    folder: KeptFolder,
+    of: KeptOf,
+    /// When they were kept.
+    at: String,
+    /// Whether they are on the screen.
+    is_open: bool,
+    /// Whether she wants to see nothing of them now.
+    is_put_off: bool,
+}
+
+/// A step with what was left behind, by its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum KeptStep {
+    /// Opens it.
+    Open(usize),
+    /// Hides it until the program starts again.
+    PutOff(usize),
+}
+
+impl Default for KeptAside {
+    fn default() -> Self {
+        Self {
+            root: None,
+            after: AFTER,
+            left: Vec::new(),
+            own: None,
+            kept: None,
+            is_touched: false,
+            due: None,
+            has_failed: false,
+        }
+    }
+}
+
+impl KeptAside {
+    /// Keeps changes in `root`, and finds what was left there.
+    pub fn in_folder(root: PathBuf, after: Option<Duration>) -> Self {
+        let left = KeptFolder::left_behind(&root).into_iter();
+        let left = left.filter_map(|folder| {
+            let at = DateTime::<Local>::from(folder.written()?);
+            Some(Left {
+                of: folder.whose()?,
+                at: at.format("%Y-%m-%d %H:%M").to_string(),
+                folder,
+                is_open: false,
+                is_put_off: false,
+            })
+        });
+        Self {
+            left: left.collect(),
+            root: Some(root),
+            after: after.unwrap_or(AFTER),
+            ..Self::default()
+        }
+    }
+
+    /// What is offered: by its place whose it is, and when it was kept.
+    pub fn offered(&self) -> impl Iterator<Item = (usize, &KeptOf, &str)> {
+        let left = self.left.iter().enumerate();
+        let offered = left.filter(|(_, left)| !left.is_open && !left.is_put_off);
+        offered.map(|(place, left)| (place, &left.of, left.at.as_str()))
+    }
+
+    /// Something may have been changed.
+    pub(crate) fn touch(&mut self) {
+        self.is_touched = true;
+    }
+
+    /// Nothing is unsaved any more.
+    fn forget(&mut self) {
+        (self.kept, self.due) = (None, None);
+        if let Some(own) = self.own.take() {
+            own.remove();
+        }
+    }
+
+    /// The window is closed, and she was asked about what was not saved.
+    pub(crate) fn end(&mut self) {
+        self.forget();
+        for left in self.left.drain(..).filter(|left| left.is_open) {
+            left.folder.remove();
+        }
+    }
+}
+
+impl State {
+    pub(crate) fn kept_step(&mut self, step: KeptStep) {
+        match step {
+            KeptStep::Open(place) => {
+                if let Some(left) = self.kept_aside.left.get(place) {
+                    let paths = vec![left.folder.flight_file()];
+                    let named = Named::Alone;
+                    self.leave(Leaving::Read { paths, named });
+                }
+            }
+            KeptStep::PutOff(place) => {
+                if let Some(left) = self.kept_aside.left.get_mut(place) {
+                    left.is_put_off = true;
+                }
+            }
+        }
+    }
+
+    /// What was left behind goes once it was opened, and saved or discarded.
+    fn let_go_of_left(&mut self) {
+        let shown = self
+            .open
+            .as_deref()
+            .filter(|open| open.files.kept.is_some());
+        let shown = shown.and_then(|open| open.files.origin.flight_file());
+        let is_opening = self.is_opening();
+        let mut place = 0;
+        while let Some(left) = self.kept_aside.left.get_mut(place) {
+            let file = left.folder.flight_file();
+            if shown.is_some_and(|shown| files::is_same_file(shown, &file)) {
+                left.is_open = true;
+            } else if left.is_open && !is_opening {
+                self.kept_aside.left.remove(place).folder.remove();
+                continue;
+            }
+            place += 1;
+        }
+    }
+
+    /// Keeps aside what is not saved, some time after the last change was kept; and lets go of what is saved. In each frame.
+    pub(crate) fn keep_aside(&mut self) {
+        if self.kept_aside.root.is_none() || self.is_keeping() {
+            return;
+        }
+        self.let_go_of_left();
+        if !self.open.as_deref().is_some_and(OpenFlight::is_changed) {
+            self.kept_aside.forget();
+            return;
+        }
+        if !self.kept_aside.is_touched {
+            return;
+        }
+        let now = Instant::now();
+        let due = now + self.kept_aside.after;
+        let due = *self.kept_aside.due.get_or_insert(due);
+        if now < due {
+            // An idle window draws no other frame for it.
+            self.context.request_repaint_after(due - now);
+            return;
+        }
+        self.kept_aside.is_touched = false;
+        self.kept_aside.due = None;
+        self.start_keeping();
+    }
+}
