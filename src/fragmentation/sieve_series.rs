@@ -249,9 +249,9 @@ pub(super) fn keep_nearest_certain(points: &mut Vec<[f64; 2]>) {
 }
 
 impl DistributionSet {
-    /// Every curve at the sieves of a series, with what is not known there and what was measured beyond them, one sentence each. Where a
-    /// curve was measured at sizes beyond the series' ends (blasted rock above 125 mm) it keeps them: left out, they would seem never to
-    /// have been measured, and a function fitted to the rest would guess them.
+    /// Every curve at the sieves of a series, with what is not known there and what was measured beyond them, a sentence each of all
+    /// curves. Where a curve was measured at sizes beyond the series' ends (blasted rock above 125 mm) it keeps them: left out, they
+    /// would seem never to have been measured, and a function fitted to the rest would guess them.
     ///
     /// # Errors
     /// Where a curve has fewer than two of them where it was measured.
@@ -261,7 +261,7 @@ impl DistributionSet {
             unit: self.unit,
             curves: Vec::new(),
         };
-        let mut warnings = Vec::new();
+        let [mut kept_as_measured, mut left_out] = [Sizes::default(), Sizes::default()];
         for curve in &self.curves {
             let named = |fault: Fault| {
                 Fault::new(
@@ -285,34 +285,98 @@ impl DistributionSet {
                 let mut points = found.distribution.points().iter();
                 points.any(|point| point[0] == **size)
             });
-            let kept: Vec<String> = kept.map(|size| as_typed(*size)).collect();
-            if let (Some(least), Some(most)) = (kept.first(), kept.last()) {
-                warnings.push(format!(
-                    "{}{} has no sieve for what was measured at {} sizes ({least} to {most} {}): they are kept as they are",
-                    curve.labels.in_front(),
-                    series.name(),
-                    kept.len(),
-                    self.unit
-                ));
-            }
-            if let (Some(least), Some(most)) = (found.unknown.first(), found.unknown.last()) {
-                let [least, most] = [least, most].map(|size| as_typed(*size));
-                warnings.push(format!(
-                    "{}{} of the {} sieves of {} ({least} to {most} {}) lie outside of what was \
-                     measured and are left out",
-                    curve.labels.in_front(),
-                    found.unknown.len(),
-                    openings.len(),
-                    series.name(),
-                    self.unit
-                ));
-            }
+            let kept: Vec<f64> = kept.copied().collect();
+            kept_as_measured.add(curve, &kept);
+            left_out.add(curve, &found.unknown);
             set.curves.push(LabelledDistribution {
                 distribution: found.distribution,
                 ..curve.clone()
             });
         }
-        Ok((set, warnings))
+        let all = self.curves.len();
+        let kept = kept_as_measured.told(self.unit, all).map(|told| {
+            format!(
+                "{}{} has no sieve for what was measured at {} sizes{} ({}): they are kept as they are",
+                told.in_front,
+                series.name(),
+                told.count,
+                told.of_curves,
+                told.range
+            )
+        });
+        let left_out = left_out.told(self.unit, all).map(|told| {
+            format!(
+                "{}{} of the {} sieves of {} ({}) lie outside of what was measured{} and are left out",
+                told.in_front,
+                told.count,
+                openings.len(),
+                series.name(),
+                told.range,
+                told.of_curves
+            )
+        });
+        Ok((set, kept.into_iter().chain(left_out).collect()))
+    }
+}
+
+/// Sizes of one curve after another, which are told in one sentence.
+#[derive(Default)]
+struct Sizes {
+    /// Of how many curves there are some, how many at least and at most, and the least and the greatest.
+    curves: usize,
+    counts: [usize; 2],
+    ends: [f64; 2],
+    /// What stands in front of a sentence of the first of the curves.
+    first: String,
+}
+
+/// The parts of such a sentence.
+struct ToldSizes {
+    in_front: String,
+    count: String,
+    range: String,
+    of_curves: String,
+}
+
+impl Sizes {
+    /// Adds those of a curve, which ascend.
+    fn add(&mut self, curve: &LabelledDistribution, sizes: &[f64]) {
+        let (Some(least), Some(most)) = (sizes.first(), sizes.last()) else {
+            return;
+        };
+        let count = sizes.len();
+        if self.curves == 0 {
+            self.counts = [count; 2];
+            self.ends = [*least, *most];
+            self.first = curve.labels.in_front();
+        }
+        self.curves += 1;
+        self.counts = [self.counts[0].min(count), self.counts[1].max(count)];
+        self.ends = [self.ends[0].min(*least), self.ends[1].max(*most)];
+    }
+
+    /// What is told of them, of `all` curves; `None` where there are none.
+    fn told(self, unit: LengthUnit, all: usize) -> Option<ToldSizes> {
+        let [least, most] = self.ends.map(as_typed);
+        let count = match self.counts {
+            [fewest, most] if fewest == most => most.to_string(),
+            [fewest, most] => format!("{fewest} to {most}"),
+        };
+        let (in_front, of_curves) = match self.curves {
+            0 => return None,
+            1 => (self.first, String::new()),
+            some if some == all => (String::new(), format!(" of each of the {all} curves")),
+            some => (
+                String::new(),
+                format!(" of each of {some} of the {all} curves"),
+            ),
+        };
+        Some(ToldSizes {
+            in_front,
+            count,
+            range: format!("{least} to {most} {unit}"),
+            of_curves,
+        })
     }
 }
 
@@ -502,6 +566,51 @@ mod tests {
         assert!(
             said[0].contains("has no sieve for what was measured at 4 sizes (180 to 500 mm)"),
             "{said:?}"
+        );
+    }
+
+    /// The basic set from 63 um to 125 mm has 12 sieves: of 1 to 8 mm 8 lie outside, of 1 to 4 mm 9; 200 and 250 mm lie beyond it.
+    #[test]
+    fn what_lies_outside_is_said_once_for_all_curves() {
+        let curve = |photo: &str, points: &[[f64; 2]]| LabelledDistribution {
+            labels: Labels {
+                photo: photo.to_owned(),
+                ..Labels::default()
+            },
+            weight: None,
+            distribution: SizeDistribution::new(points.to_vec()).expect("a distribution"),
+        };
+        let mut set = DistributionSet {
+            unit: LengthUnit::Millimetre,
+            curves: vec![
+                curve("a", &[[1.0, 10.0], [8.0, 90.0]]),
+                curve("b", &[[1.0, 10.0], [4.0, 90.0]]),
+            ],
+        };
+        let said =
+            |set: &DistributionSet| set.resampled(SieveSeries::En933Basic).expect("sieves").1;
+        assert_eq!(
+            said(&set),
+            [
+                "8 to 9 of the 12 sieves of EN 933-2 basic set (0.063 to 125 mm) lie outside of what was measured of each of the 2 curves and are left out"
+            ]
+        );
+        set.curves.push(curve(
+            "c",
+            &[
+                [0.063, 1.0],
+                [1.0, 10.0],
+                [125.0, 70.0],
+                [200.0, 90.0],
+                [250.0, 99.0],
+            ],
+        ));
+        assert_eq!(
+            said(&set),
+            [
+                "c: EN 933-2 basic set has no sieve for what was measured at 2 sizes (200 to 250 mm): they are kept as they are",
+                "8 to 9 of the 12 sieves of EN 933-2 basic set (0.063 to 125 mm) lie outside of what was measured of each of 2 of the 3 curves and are left out",
+            ]
         );
     }
 
