@@ -263,25 +263,49 @@ fn several_curves_are_an_array_and_one_that_cannot_be_fitted_is_said() {
     assert!(said.contains("4 points for the 5 parameters"), "{said}");
 }
 
-/// What nobody measured is the function's alone, and is said where people read it.
+/// What nobody measured is the function's alone, and is said where people read it; the largest size, too.
 #[test]
-fn percentiles_beyond_what_was_measured_are_named() {
-    let said = |text: &str| {
+fn sizes_beyond_what_was_measured_are_named() {
+    let said_with = |text: &str, more: &[&str]| {
         let folder = table(text);
         let path = folder.path().join("t.csv");
-        let told = stdout_of(&["psd", "fit", path.to_str().expect("a UTF-8 path")]);
+        let mut arguments = vec!["psd", "fit", path.to_str().expect("a UTF-8 path")];
+        arguments.extend(more);
+        let told = stdout_of(&arguments);
         let line = told
             .lines()
             .find(|line| line.starts_with("beyond what was measured"));
         line.map(str::to_owned)
     };
-    // P10 is 9.70 mm and P90 100.6 mm by scipy, too.
+    let said = |text: &str| said_with(text, &[]);
+    // P10 is 9.70 mm and P90 100.6 mm by scipy, too; P99.95 286 mm and xmax 469 mm by a Nelder-Mead search in Python.
+    let open = "size_mm,percent_passing\n10,10\n25,30\n50,60\n100,90\n";
     assert_eq!(
-        said("size_mm,percent_passing\n10,10\n25,30\n50,60\n100,90\n").expect("a line"),
-        "beyond what was measured, by the function alone: P10 (below 10 mm) and P90 (above 100 mm)"
+        said(open).expect("a line"),
+        "beyond what was measured, by the function alone: P10 (below 10 mm) and P90, topsize (P99.95), xmax (above 100 mm)"
     );
+    // By the same: 282 mm and 453 mm.
+    let longer = "size_mm,percent_passing\n1,2\n10,10\n25,30\n50,60\n100,90\n200,99\n";
     assert_eq!(
-        said("size_mm,percent_passing\n1,2\n10,10\n25,30\n50,60\n100,90\n200,99\n"),
-        None
+        said(longer).expect("a line"),
+        "beyond what was measured, by the function alone: topsize (P99.95), xmax (above 200 mm)"
     );
+    // Swebrec of xmax 64, x50 16, b 2 by hand: at 16 * 4^-k mm it is 100 / (1 + (1 + k)^2) %. P10 is 1 mm, P90 40.3 mm, P99.95 62.0 mm.
+    let points =
+        "size_mm,percent_passing\n0.5,7.5472\n1,10\n2,13.7931\n4,20\n8,30.7692\n16,50\n32,80\n";
+    assert_eq!(said(&format!("{points}128,100\n")), None);
+    let last = format!("{points}36.7583,86.2068\n");
+    let beyond = "beyond what was measured, by the function alone: P90, topsize (P99.95)";
+    assert_eq!(
+        said(&last).expect("a line"),
+        format!("{beyond}, xmax (above 36.7583 mm)")
+    );
+    // A largest size that is known is no guess.
+    assert_eq!(
+        said_with(&last, &["--xmax", "64"]).expect("a line"),
+        format!("{beyond} (above 36.7583 mm)")
+    );
+    // Rosin-Rammler has none.
+    let of_rosin_rammler = said_with(open, &["--model", "rosin-rammler"]).expect("a line");
+    assert!(!of_rosin_rammler.contains("xmax"), "{of_rosin_rammler}");
 }

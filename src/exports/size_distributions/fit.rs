@@ -80,18 +80,14 @@ pub fn fit_table(report: &FitReport) -> String {
     tables.join("\n")
 }
 
-/// Which percentiles lie beyond the sizes that were measured; nothing where none does.
-fn beyond(points: &[[f64; 2]], percentiles: &[Percentile], unit: LengthUnit) -> String {
+/// Which of the sizes that a function gives, by their names, lie beyond those that were measured; nothing where none does.
+fn beyond(points: &[[f64; 2]], given: &[(String, f64)], unit: LengthUnit) -> String {
     let sizes = points.iter().map(|[size, _]| *size);
     let least = sizes.clone().fold(f64::INFINITY, f64::min);
     let greatest = sizes.fold(f64::NEG_INFINITY, f64::max);
     let named = |is_it: &dyn Fn(f64) -> bool, end: &str, size: f64| {
-        let names = percentiles
-            .iter()
-            .filter(|percentile| is_it(percentile.size));
-        let names: Vec<String> = names
-            .map(|percentile| format!("P{}", percentile.percent))
-            .collect();
+        let names = given.iter().filter(|(_, size)| is_it(*size));
+        let names: Vec<&str> = names.map(|(name, _)| name.as_str()).collect();
         (!names.is_empty())
             .then(|| format!("{} ({end} {} {unit})", names.join(", "), trimmed(size, 6)))
     };
@@ -167,14 +163,26 @@ fn table(report: &FitReport, curve: &FittedCurve) -> String {
         let size = significant(percentile.size, 5);
         sizes.push(vec![name, size, end(0), end(1)]);
     };
-    let percentiles = report.percentiles(fit);
-    for percentile in &percentiles {
-        line(format!("P{}", percentile.percent), *percentile);
+    let percentiles = report.percentiles(fit).into_iter();
+    let topsize = (
+        format!("topsize (P{TOPSIZE_PERCENT})"),
+        fit.topsize(report.level),
+    );
+    let mut by_function = Vec::new();
+    for (name, percentile) in percentiles
+        .map(|percentile| (format!("P{}", percentile.percent), percentile))
+        .chain([topsize])
+    {
+        by_function.push((name.clone(), percentile.size));
+        line(name, percentile);
     }
-    let topsize = fit.topsize(report.level);
-    line(format!("topsize (P{TOPSIZE_PERCENT})"), topsize);
+    // One that was given is nobody's guess.
+    let xmax = (fit.parameters.iter())
+        .find(|parameter| parameter.name == "xmax" && !curve.xmax_given)
+        .map(|parameter| (parameter.name.to_owned(), parameter.value));
+    by_function.extend(xmax);
     text += &aligned(&sizes);
-    text += &beyond(points, &percentiles, report.unit);
+    text += &beyond(points, &by_function, report.unit);
     text += &format!(
         "uniformity P60/P10 {}, curvature P30^2/(P10 P60) {}\n\n",
         significant(fit.uniformity(), 4),
