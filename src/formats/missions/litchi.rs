@@ -180,7 +180,7 @@ fn add(
 }
 
 fn notes_of(repairs: &NumberRepairs, notes: &mut Notes) {
-    if !repairs.warnings().is_empty() {
+    if repairs.has_decimal_commas() {
         notes.say("decimal commas are read as decimal points");
     }
 }

@@ -9,7 +9,7 @@
 //! - A comma in a number is a decimal one; that is counted, to be said. `1,234` may as well be
 //!   thousands: it is read where other numbers show that commas are decimal here, else refused.
 
-use std::cell::Cell;
+use std::cell::RefCell;
 
 use crate::tables::table::{NumberRepairs, may_be_thousands, split_number};
 use crate::text::fields::shown;
@@ -163,7 +163,7 @@ pub(crate) struct Numbers {
     decimal_comma: bool,
     decimal_point: bool,
     /// In a cell: closures read numbers.
-    repairs: Cell<NumberRepairs>,
+    repairs: RefCell<NumberRepairs>,
 }
 
 impl Numbers {
@@ -202,9 +202,7 @@ impl Numbers {
         match parsed {
             Ok(number) if number.is_finite() => {
                 if field.contains(',') {
-                    let mut repairs = self.repairs.take();
-                    repairs.decimal_comma(line);
-                    self.repairs.set(repairs);
+                    self.repairs.borrow_mut().decimal_comma(line);
                 }
                 Ok(number)
             }

@@ -4,30 +4,40 @@
 //!   line behind it hold. Runs of blanks only where there is none. Fields may be quoted.
 //! - The text is UTF-8, UTF-16, or Windows-1252 where it can be neither.
 //! - A byte order mark, empty lines and lines that begin with # are passed over (but not "#4": a digit
-//!   right behind it makes it a sieve's name).
+//!   right behind it makes it a sieve's name; nor the line of names whose first column is called #).
+//! - A line break inside of quotes is a blank.
 //! - A line may end early: what is missing is empty. What stands beyond the header's columns is a
 //!   fault, because a decimal comma may have shifted it there.
 //! - Numbers may have a decimal comma where the table shows that it is one and not a thousands
-//!   separator ([`Table::number`]).
+//!   separator ([`Table::number`]). Thousands may stand apart.
 
+mod cell_number;
 mod encoding;
 mod records;
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use csv::StringRecord;
 
+use self::cell_number::number_text;
 use self::encoding::decoded;
-use self::records::{blank_records, separated_records, separator, without_comments};
+use self::records::{blank_records, counted_lines, separated_records, separator};
 use crate::fault::Fault;
 use crate::files::{FileError, open_file};
 use crate::text::fields::shown;
+
+pub use self::cell_number::may_be_thousands;
+pub(crate) use self::cell_number::{last_digit, number_and_unit, split_number};
 
 /// Larger files are no tables that people made or looked at.
 const LARGEST: usize = 16 << 20;
 
 /// More columns than anyone measures.
 const MOST_COLUMNS: usize = 10_000;
+
+/// The end of remedies where a line can be done without.
+pub(crate) const OR_LEAVE_OUT: &str = ", or leave the line out";
 
 /// A table in memory.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,23 +79,41 @@ impl Row {
 }
 
 /// What was mended in numbers, to be said.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct NumberRepairs {
     decimal_commas: usize,
     first_line: u64,
+    /// How many had thousands that stand apart; of the first the line, and as what it was read.
+    apart: usize,
+    first_apart: (u64, String),
 }
 
 impl NumberRepairs {
     /// One sentence for each kind of repair.
     pub fn warnings(&self) -> Vec<String> {
-        match self.decimal_commas {
-            0 => Vec::new(),
-            count => vec![format!(
-                "decimal commas are read as decimal points ({count} {}, first on line {})",
-                if count == 1 { "number" } else { "numbers" },
+        let numbers = |count: usize| if count == 1 { "number" } else { "numbers" };
+        let commas = (self.decimal_commas > 0).then(|| {
+            format!(
+                "decimal commas are read as decimal points ({} {}, first on line {})",
+                self.decimal_commas,
+                numbers(self.decimal_commas),
                 self.first_line
-            )],
-        }
+            )
+        });
+        let apart = (self.apart > 0).then(|| {
+            let (line, how) = &self.first_apart;
+            format!(
+                "thousands that stand apart are read as one number: {how} ({} {}, first on line {line})",
+                self.apart,
+                numbers(self.apart)
+            )
+        });
+        commas.into_iter().chain(apart).collect()
+    }
+
+    /// Whether some number had a decimal comma.
+    pub(crate) fn has_decimal_commas(&self) -> bool {
+        self.decimal_commas > 0
     }
 
     /// Notes a decimal comma on this line.
@@ -94,6 +122,14 @@ impl NumberRepairs {
             self.first_line = line;
         }
         self.decimal_commas += 1;
+    }
+
+    /// Notes a cell, or the name of a column, on this line whose thousands stand apart, and what was read.
+    pub(crate) fn thousands_apart(&mut self, line: u64, cell: &str, number: f64) {
+        if self.apart == 0 {
+            self.first_apart = (line, format!("'{}' as {number}", shown(cell)));
+        }
+        self.apart += 1;
     }
 }
 
@@ -124,7 +160,7 @@ impl Table {
             let what = "there is a byte 0: it is no text, or text in UTF-16";
             return Err(Fault::at(line, what, "save it as CSV in UTF-8"));
         }
-        let text = without_comments(text);
+        let text = counted_lines(text);
         let found = separator(&text);
         let semicolons = found == Some(';');
         let mut records = match found {
@@ -307,16 +343,9 @@ impl Table {
         if cell.is_empty() {
             return Ok(None);
         }
-        if let Some(plain) = without_thousands(cell) {
-            if plain.contains(',') {
-                repairs.decimal_comma(row.line);
-            }
-            let number = plain.replace(',', ".").parse::<f64>();
-            return number
-                .map(|number| Some((number, "")))
-                .map_err(|_| self.no_number(row, column));
-        }
-        let (number, rest) = split_number(cell);
+        let (number, rest) = number_text(cell);
+        let stands_apart = matches!(number, Cow::Owned(_));
+        let number = &*number;
         let fault = |what: &str, remedy: &str| {
             let name = self.name(column);
             let what = format!("column {name}: '{}' {what}", shown(cell));
@@ -342,7 +371,12 @@ impl Table {
             _ => return fault("has separators of thousands", plain),
         };
         match parsed {
-            Ok(number) if number.is_finite() => Ok(Some((number, rest.trim_start()))),
+            Ok(number) if number.is_finite() => {
+                if stands_apart {
+                    repairs.thousands_apart(row.line, cell, number);
+                }
+                Ok(Some((number, rest.trim_start())))
+            }
             Ok(_) => fault("is not finite", "correct it"),
             Err(_) => Err(self.no_number(row, column)),
         }
@@ -352,7 +386,7 @@ impl Table {
     pub fn no_number(&self, row: &Row, column: usize) -> Fault {
         let cell = shown(row.cell(column));
         let what = format!("column {}: '{cell}' is not a number", self.name(column));
-        Fault::at(row.line, what, "correct it, or leave the line out")
+        Fault::at(row.line, what, format!("correct it{OR_LEAVE_OUT}"))
     }
 
     /// What a column is called in messages.
@@ -376,9 +410,9 @@ impl Table {
 
     fn look_for_decimal_signs(&mut self) {
         for cell in self.rows.iter().flat_map(|row| row.cells.iter()) {
-            let (number, _) = split_number(cell);
+            let (number, _) = number_text(cell);
             let signs = [',', '.'].map(|sign| number.matches(sign).count());
-            if signs[0] + signs[1] == 1 && !may_be_thousands(number) {
+            if signs[0] + signs[1] == 1 && !may_be_thousands(&number) {
                 self.decimal_comma |= signs[0] == 1;
                 self.decimal_point |= signs[1] == 1;
             }
@@ -420,74 +454,6 @@ pub(crate) fn read_bounded(path: &Path) -> Result<(String, Option<&'static str>)
 fn too_large() -> Fault {
     let what = format!("it is larger than {} MB", LARGEST >> 20);
     Fault::new(what, "give the table alone")
-}
-
-/// A number whose thousands stand apart as Excel writes them in French and Swiss: "1 450,5" with a narrow or wide blank that does not
-/// break, "1'450". `None` of any other cell.
-fn without_thousands(cell: &str) -> Option<String> {
-    let (whole, decimals) = match cell.find(['.', ',']) {
-        Some(at) => cell.split_at_checked(at)?,
-        None => (cell, ""),
-    };
-    let is_digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-    let sign = ["-", "+"].into_iter().find(|sign| whole.starts_with(sign));
-    let bare = whole.strip_prefix(['-', '+']).unwrap_or(whole);
-    let between = bare.chars().find(|c| !c.is_ascii_digit())?;
-    if !matches!(
-        between,
-        ' ' | '\u{a0}' | '\u{202f}' | '\u{2009}' | '\'' | '’'
-    ) {
-        return None;
-    }
-    let mut groups = bare.split(between);
-    let first = groups.next()?;
-    let is_grouped = is_digits(first)
-        && first.len() <= 3
-        && !first.starts_with('0')
-        && groups.all(|group| is_digits(group) && group.len() == 3);
-    let is_decimal = decimals.is_empty() || decimals.get(1..).is_some_and(is_digits);
-    (is_grouped && is_decimal).then(|| {
-        format!(
-            "{}{}{decimals}",
-            sign.unwrap_or_default(),
-            bare.replace(between, "")
-        )
-    })
-}
-
-/// A cell's number, with all its points and commas, and what follows it.
-pub(crate) fn split_number(cell: &str) -> (&str, &str) {
-    let bytes = cell.as_bytes();
-    let run = |from: usize, is: &dyn Fn(u8) -> bool| {
-        let rest = bytes.get(from..).unwrap_or_default();
-        from + rest.iter().take_while(|&&b| is(b)).count()
-    };
-    let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
-    let mut end = run(sign, &|b| b.is_ascii_digit() || b == b'.' || b == b',');
-    if end > sign && matches!(bytes.get(end), Some(b'e' | b'E')) {
-        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
-        let digits = end + 1 + sign;
-        let exponent = run(digits, &|b| b.is_ascii_digit());
-        if exponent > digits {
-            end = exponent;
-        }
-    }
-    cell.split_at_checked(end).unwrap_or((cell, ""))
-}
-
-/// Whether the one comma or point of a number may separate thousands: one to three digits in front, of
-/// which the first is no 0, and three behind.
-pub fn may_be_thousands(number: &str) -> bool {
-    let number = number.trim_start_matches(['+', '-']);
-    let Some((whole, rest)) = number.split_once([',', '.']) else {
-        return false;
-    };
-    let digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
-    (1..=3).contains(&whole.len())
-        && !whole.starts_with('0')
-        && digits(whole)
-        && rest.len() == 3
-        && digits(rest)
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use crate::fault::Fault;
 const MOST_ROWS: usize = 500_000;
 
 /// Whether a line holds data or names: not empty, no comment, and not what tells Excel the separator. "#4" is a sieve's name.
-fn counts(line: &&str) -> bool {
+fn counts(line: &str) -> bool {
     let comment = line.strip_prefix('#');
     let comment = comment.is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()));
     let of_excel = line.trim().trim_matches('"').to_lowercase();
@@ -18,31 +18,133 @@ fn counts(line: &&str) -> bool {
     !line.trim().is_empty() && !comment && !of_excel
 }
 
-/// The text with empty lines in place of those that do not count, so that lines keep their numbers.
-pub(super) fn without_comments(text: &str) -> String {
-    let lines = text
-        .lines()
-        .flat_map(|line| [if counts(&line) { line } else { "" }, "\n"]);
-    lines.collect()
+/// How many lines a cell in quotes may have.
+const MOST_BREAKS: usize = 10;
+
+/// What may stand between fields, by what is looked for first.
+const SEPARATORS: [char; 3] = ['\t', ';', ','];
+
+/// Walks through a line, whose first field may be in quotes from an earlier line on, and shows what is outside of quotes. Whether a
+/// field is in quotes at its end. A quotation mark counts at the beginning of a field; elsewhere it is inches.
+fn in_quotes_behind(
+    line: &str,
+    mut quoted: bool,
+    is_separator: impl Fn(char) -> bool,
+    mut outside: impl FnMut(char),
+) -> bool {
+    let mut begins = !quoted;
+    let mut chars = line.chars().peekable();
+    while let Some(c) = chars.next() {
+        if quoted {
+            // Two of them are one inside of the field.
+            quoted = c != '"' || chars.next_if_eq(&'"').is_some();
+            continue;
+        }
+        quoted = begins && c == '"';
+        begins = !quoted && (is_separator(c) || begins && c == ' ');
+        if !quoted {
+            outside(c);
+        }
+    }
+    quoted
 }
 
-/// The separator of the header and the line behind it; `None` for blanks.
+/// How many of the lines behind a line belong to it, because a cell in quotes goes on there, as Excel wraps names of columns. Quotes
+/// that do not end soon are something else.
+fn lines_in_quotes(line: &str, behind: &[&str]) -> usize {
+    let goes_on = |line: &str, quoted: bool| {
+        in_quotes_behind(line, quoted, |c| SEPARATORS.contains(&c), |_| {})
+    };
+    let mut quoted = goes_on(line, false);
+    let mut count = 0;
+    for &next in behind.iter().take(MOST_BREAKS) {
+        if !quoted {
+            break;
+        }
+        quoted = goes_on(next, true);
+        count += 1;
+    }
+    if quoted { 0 } else { count }
+}
+
+/// A line and those that belong to it, with a blank in place of each break.
+fn joined(line: &str, more: &[&str]) -> String {
+    let mut whole = line.to_owned();
+    for next in more {
+        whole.truncate(whole.trim_end().len());
+        whole.push(' ');
+        whole.push_str(next.trim_start());
+    }
+    whole
+}
+
+/// Whether a line that would be a comment names columns, of which the first is called #: it has as many names as the line below it
+/// has cells, which begins with a number.
+fn names_columns(line: &str, below: &[&str]) -> bool {
+    let begins = line
+        .strip_prefix('#')
+        .is_some_and(|rest| rest.trim_start_matches(' ').starts_with(SEPARATORS));
+    let Some(&next) = below.iter().find(|line| counts(line)).filter(|_| begins) else {
+        return false;
+    };
+    let cells = |line: &str, separator| {
+        let rows = separated_records(line, separator).unwrap_or_default();
+        rows.into_iter().next().map(|row| row.cells)
+    };
+    SEPARATORS.into_iter().any(|separator| {
+        let (Some(names), Some(row)) = (cells(line, separator), cells(next, separator)) else {
+            return false;
+        };
+        let is_number = |cell: &str| cell.starts_with(|c: char| c.is_ascii_digit());
+        let has_letter = |name: &str| name.contains(char::is_alphabetic);
+        names.len() > 1
+            && names.len() == row.len()
+            && names.get(0) == Some("#")
+            && names.iter().all(|name| !name.is_empty())
+            && names.iter().any(has_letter)
+            && row.get(0).is_some_and(is_number)
+    })
+}
+
+/// The text with empty lines in place of those that do not count and behind those that are joined, so that lines keep their numbers.
+pub(super) fn counted_lines(text: &str) -> String {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut rest = &lines[..];
+    let mut kept = String::with_capacity(text.len() + 1);
+    let mut is_first = true;
+    while let Some((line, behind)) = rest.split_first() {
+        let more = lines_in_quotes(line, behind);
+        let (more, below) = behind.split_at(more);
+        let whole = joined(line, more);
+        let is_counted = counts(line) || is_first && names_columns(&whole, below);
+        rest = if is_counted { below } else { behind };
+        let count = if is_counted { more.len() } else { 0 };
+        if is_counted {
+            is_first = false;
+            kept.push_str(&whole);
+        }
+        kept.extend(std::iter::repeat_n('\n', 1 + count));
+    }
+    kept
+}
+
+/// The separator of the header and the line behind it, among lines that count; `None` for blanks.
 pub(super) fn separator(text: &str) -> Option<char> {
-    let mut lines = text.lines().filter(counts);
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
     let (header, next) = (lines.next()?, lines.next());
     let holds = |line: &str, separator: char| {
-        // A quotation mark counts at the beginning of a field; elsewhere it is inches.
-        let (mut quoted, mut begins) = (false, true);
-        line.chars().any(|c| {
-            quoted = if quoted { c != '"' } else { begins && c == '"' };
-            begins = !quoted && (c == separator || begins && c == ' ');
-            !quoted && c == separator
-        })
+        let mut is_there = false;
+        in_quotes_behind(
+            line,
+            false,
+            |c| c == separator,
+            |c| is_there |= c == separator,
+        );
+        is_there
     };
-    let separators = ['\t', ';', ','];
     let in_both = |&c: &char| holds(header, c) && next.is_none_or(|next| holds(next, c));
-    let found = separators.into_iter().find(in_both);
-    found.or_else(|| separators.into_iter().find(|&c| holds(header, c)))
+    let found = SEPARATORS.into_iter().find(in_both);
+    found.or_else(|| SEPARATORS.into_iter().find(|&c| holds(header, c)))
 }
 
 /// The records of a table with a separator.
@@ -75,7 +177,7 @@ pub(super) fn separated_records(text: &str, separator: char) -> Result<Vec<Row>,
 pub(super) fn blank_records(text: &str) -> Result<Vec<Row>, Fault> {
     let mut rows: Vec<Row> = Vec::new();
     for (line, number) in text.lines().zip(1..) {
-        if !counts(&line) {
+        if line.trim().is_empty() {
             continue;
         }
         let cells: StringRecord = match rows.is_empty() {
