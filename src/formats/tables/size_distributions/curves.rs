@@ -59,6 +59,7 @@ pub(super) struct Repairs {
     empty: Count,
     same_names: Count,
     one_size: Count,
+    fractions: Count,
     sieve_names: bool,
     /// Whole sentences.
     pub(super) said: Vec<String>,
@@ -85,6 +86,11 @@ impl Repairs {
         self.same_names.add(line);
     }
 
+    /// A fraction was taken to be of the unit that is stated.
+    pub(super) fn fraction(&mut self, line: u64) {
+        self.fractions.add(line);
+    }
+
     /// A line of a curve without a number.
     pub(super) fn empty(&mut self, line: u64) {
         self.empty.add(line);
@@ -99,6 +105,8 @@ impl Repairs {
             self.empty.say("a line without a number is left out"),
             self.same_names
                 .say("a curve with the name of an earlier one is told apart by its line"),
+            self.fractions
+                .say("a fraction is of the unit that is stated of sizes, not of inches"),
             self.over
                 .say("passing a little above 100 %, as rounding gives it, is taken for 100 %"),
             self.falls.say(

@@ -25,8 +25,9 @@
 //! - The unit of sizes stands in the name of their column or below it, or behind each size or in a column of its own; else the
 //!   user states it; else a line above the names does; else it is mm. What may be a unit and is not known, or not said to be theirs,
 //!   is asked about. Micrometres are read into mm. Sizes may be called by ASTM E11's names of
-//!   sieves ("No. 4", "3/8 in."); where one is, "2 in." is the sieve of 50 mm too.
-//! - Mended, and said: decimal commas; passing up to 100.05 % and falls of up to 0.05 %, which rounding
+//!   sieves ("No. 4", "3/8 in."); where one is, "2 in." is the sieve of 50 mm too. A fraction without a unit ("3/8") is such a name,
+//!   but where another unit is stated (`names_of_sizes` says where): there it is of that.
+//! - Mended, and said: decimal commas; thousands that stand apart; passing up to 100.05 % and falls of up to 0.05 %, which rounding
 //!   explains; lines of a title above the names; a line twice; a size of 0 that nothing passes; the pan under the sieves.
 //! - For the text itself see [`Table`].
 

@@ -317,6 +317,10 @@ pub(super) fn is_amount(name: &str) -> bool {
 
 /// What the name of a column says.
 pub(super) fn role(name: &str) -> Role {
+    // It counts the lines.
+    if name.trim() == "#" {
+        return Role::Statistic;
+    }
     let mut words = words(name);
     let percent = words.iter().any(|word| word == "percent");
     let unit = match percent {

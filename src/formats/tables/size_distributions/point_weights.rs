@@ -16,8 +16,8 @@ const SAME: f64 = 1e-9;
 /// Weights of points by their size.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointWeights {
-    /// Sizes as they are written, and their weights; no size twice.
-    weights: Vec<(SizeText, f64)>,
+    /// What sizes may be as they are written, and their weights; no size twice, fractions last.
+    weights: Vec<(Vec<SizeText>, f64)>,
 }
 
 impl PointWeights {
@@ -46,7 +46,8 @@ impl PointWeights {
                 .any(|of| (of / size - 1.0).abs() < SAME)
         };
         let weight = |&[size, _]: &[f64; 2]| {
-            let found = self.weights.iter().find(|(text, _)| may_be(text, size));
+            let is_it = |texts: &[SizeText]| texts.iter().any(|text| may_be(text, size));
+            let found = self.weights.iter().find(|(texts, _)| is_it(texts));
             found.map(|(_, weight)| *weight).ok_or_else(|| {
                 let what = format!("size {size} has no weight");
                 Fault::new(what, "give every line a weight; 0 leaves a point out")
@@ -90,7 +91,9 @@ fn point_weights(
     };
     let (size_column, weight_column) = (table.column(size)?, table.column(weight)?);
     let mut repairs = NumberRepairs::default();
-    let mut weights: Vec<(SizeText, f64)> = Vec::new();
+    let mut weights: Vec<(Vec<SizeText>, f64)> = Vec::new();
+    // What they are of, the reader of the sizes has found out; here they are whatever they can be, after what is sure.
+    let mut of_fractions = Vec::new();
     for row in table.rows() {
         // The reader of the sizes has said what was mended in them.
         let mut said = NumberRepairs::default();
@@ -99,11 +102,19 @@ fn point_weights(
             .ok()
             .flatten();
         let cell = row.cell(size_column);
-        let size = SizeText {
-            number: number.map(|(number, rest)| (number, SizeUnit::of(rest))),
-            sieve_mm: sieve_mm(cell),
+        let fraction = SizeText::of_fraction(cell);
+        let (size, known) = match fraction.is_empty() {
+            true => {
+                let size = SizeText {
+                    number: number.map(|(number, rest)| (number, SizeUnit::of(rest))),
+                    sieve_mm: sieve_mm(cell),
+                };
+                (vec![size], &mut weights)
+            }
+            false => (fraction, &mut of_fractions),
         };
-        if size.number.is_none() && size.sieve_mm.is_none() {
+        let is_none = |text: &SizeText| text.number.is_none() && text.sieve_mm.is_none();
+        if size.iter().all(is_none) {
             continue;
         }
         let Some(weight) = table.number(row, weight_column, &mut repairs)? else {
@@ -114,15 +125,16 @@ fn point_weights(
             let remedy = "give weights of 0 (not used) or more";
             return Err(Fault::at(row.line, what, remedy));
         }
-        match weights.iter().find(|known| known.0 == size) {
+        match known.iter().find(|known| known.0 == size) {
             Some(known) if known.1 != weight => {
                 let what = format!("size {cell} has the weights {} and {weight}", known.1);
                 return Err(Fault::at(row.line, what, "give each size one weight"));
             }
             Some(_) => {}
-            None => weights.push((size, weight)),
+            None => known.push((size, weight)),
         }
     }
+    weights.extend(of_fractions);
     Ok((PointWeights { weights }, repairs.warnings()))
 }
 
@@ -152,6 +164,16 @@ mod tests {
                 1.0,
                 [4.0, 8.0],
             ),
+            // Fractions of the table's unit, names of sieves, inches; after what is sure.
+            ("size,passing,w\n1/2,20,1\n2 1/2,80,2\n", 1.0, [0.5, 2.5]),
+            ("size,passing,w\n1/2,20,1\n2 in,80,2\n", 1.0, [12.5, 50.8]),
+            (
+                "size,passing,w\n15 3/4,20,1\n1/2 ft,80,2\n",
+                1.0,
+                [400.05, 152.4],
+            ),
+            ("size,passing,w\n1/2,20,1\n0.5,80,2\n", 1.0, [12.5, 0.5]),
+            ("size,passing,w\n1 200,20,1\n8,80,2\n", 1.0, [1200.0, 8.0]),
         ] {
             let points = points.map(|size| [size, 50.0]);
             let found = read(text).unwrap().of(&points, MM, factor);

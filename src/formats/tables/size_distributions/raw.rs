@@ -36,4 +36,6 @@ pub(super) struct OnSieves {
     pub(super) washed: Option<f64>,
     /// In the line of the total.
     pub(super) total: Option<f64>,
+    /// What one of the last digit shown there is; 0 where nobody knows.
+    pub(super) total_digit: f64,
 }

@@ -9,15 +9,15 @@ use super::names::{
     Role, counts_fragments, holds_astm_numbers, holds_sieve_numbers, is_amount, names_percent,
     role, sample_of, weight_factor,
 };
-use super::names_of_sizes::{refuse_names_of_sizes, unknown};
+use super::names_of_sizes::{fractions_of_stated_unit, refuse_names_of_sizes, unknown};
 use super::raw::{OnSieves, RawCurve, RawPoint};
 use super::retained::{is_no_sieve, is_pan, is_result, is_total, is_washed, names_pan};
-use super::size_text::{SizeText, bare_fraction, fraction_of_inches, sieve_mm};
+use super::size_text::{SizeText, fraction_of_inches, fraction_of_unit, sieve_mm};
 use super::size_unit::SizeUnit;
 use super::unit_above::Above;
 use crate::fault::Fault;
 use crate::fragmentation::Labels;
-use crate::tables::table::{Row, Table};
+use crate::tables::table::{OR_LEAVE_OUT, Row, Table, last_digit, number_and_unit};
 use crate::text::fields::shown;
 use crate::units::LengthUnit;
 
@@ -36,22 +36,18 @@ pub(super) fn read(
         holds_astm_numbers: (table.header().iter())
             .map(|name| holds_sieve_numbers(name) && holds_astm_numbers(name))
             .collect(),
-        fractions_are_of_its_unit: false,
+        fractions_are_of_its_unit: Vec::new(),
         repairs: Repairs::default(),
     };
     let layout = Layout::of(table, columns)?;
     refuse_names_of_sizes(table, &layout)?;
-    if let Layout::Long { unit, .. } | Layout::Wide { unit, .. } | Layout::Retained { unit, .. } =
-        &layout
-    {
-        let unit = unit.map(|unit| unit.unit).or(columns.unit);
-        let of_inches = [LengthUnit::Millimetre, LengthUnit::Inch];
-        reader.fractions_are_of_its_unit = unit.is_some_and(|unit| !of_inches.contains(&unit));
-    }
+    let above = Above::of(text, table.header_line());
+    reader.fractions_are_of_its_unit =
+        fractions_of_stated_unit(table, &layout, columns.unit, &above);
     let mut reading = SizeReading {
         header: None,
         given: columns.unit,
-        above: Above::of(text, table.header_line()),
+        above,
         unknown: unknown(table, &layout),
         says_percent: None,
         percentiles: false,
@@ -169,9 +165,8 @@ struct Reader<'a> {
     holds_sieve_numbers: Vec<bool>,
     /// Of each column, those whose numbers say which series they are of.
     holds_astm_numbers: Vec<bool>,
-    /// Whether a fraction without a unit is of the unit that is stated of sizes: of feet or metres it is, of millimetres nobody writes
-    /// one, and there it is of inches.
-    fractions_are_of_its_unit: bool,
+    /// Of each column, whether a fraction without a unit is of the unit that is stated of sizes.
+    fractions_are_of_its_unit: Vec<bool>,
     repairs: Repairs,
 }
 
@@ -196,15 +191,16 @@ impl Reader<'_> {
             return Err(Fault::at(
                 row.line,
                 what,
-                "fill it in, or leave the line out",
+                format!("fill it in{OR_LEAVE_OUT}"),
             ));
         }
-        if let (true, Some(number)) = (self.fractions_are_of_its_unit, bare_fraction(cell)) {
-            let number = Some((number, None));
-            return Ok(Some(SizeText {
-                number,
-                sieve_mm: None,
-            }));
+        match fraction_of_unit(cell) {
+            Some((number, unit @ Some(_))) => return Ok(Some(SizeText::of_number(number, unit))),
+            Some((number, None)) if self.is_of_its_unit(column) => {
+                self.repairs.fraction(row.line);
+                return Ok(Some(SizeText::of_number(number, None)));
+            }
+            _ => {}
         }
         let sieve_mm = match self.holds_astm_numbers.get(column) {
             Some(true) if cell.starts_with(|c: char| c.is_ascii_digit()) => {
@@ -243,6 +239,10 @@ impl Reader<'_> {
             None => None,
         };
         Ok(Some(SizeText { number, sieve_mm }))
+    }
+
+    fn is_of_its_unit(&self, column: usize) -> bool {
+        self.fractions_are_of_its_unit.get(column) == Some(&true)
     }
 
     /// Nothing passes the pan: where something is in it, the column that nobody calls passing is what stays on the sieves.
@@ -356,7 +356,15 @@ impl Reader<'_> {
                 column,
                 sample,
             };
-            self.long_column(&of_column, labels, sieves, &mut curves)?;
+            self.long_column(&of_column, labels, sieves, &mut curves)
+                .map_err(|fault| match sieves {
+                    // What a protocol lacks is missing in its sum.
+                    Some(_) => Fault {
+                        remedy: fault.remedy.replace(OR_LEAVE_OUT, ""),
+                        ..fault
+                    },
+                    None => fault,
+                })?;
         }
         Ok(curves)
     }
@@ -417,7 +425,7 @@ impl Reader<'_> {
                 return Err(Fault::at(
                     row.line,
                     what,
-                    "fill it in, or leave the line out",
+                    format!("fill it in{OR_LEAVE_OUT}"),
                 ));
             };
             let name = with_sample(self.labels(row, labels), &of.sample);
@@ -449,6 +457,9 @@ impl Reader<'_> {
                 let Some(sieves) = &mut curve.sieves else {
                     continue;
                 };
+                if total {
+                    sieves.total_digit = last_digit(row.cell(of.column)).unwrap_or_default();
+                }
                 let place = match (total, washed) {
                     (true, _) => &mut sieves.total,
                     (false, true) => &mut sieves.washed,
@@ -556,6 +567,7 @@ impl Reader<'_> {
         sizes: &[(usize, SizeText)],
         names: Option<usize>,
     ) -> Result<Vec<RawCurve>, Fault> {
+        let sizes = self.sizes_in_names(sizes);
         let taken: Vec<usize> = sizes.iter().map(|(column, _)| *column).collect();
         self.a_line_a_curve(&taken, names, |reader, row| {
             if let Some(called) = names.map(|column| row.cell(column))
@@ -578,6 +590,44 @@ impl Reader<'_> {
             }
             Ok(points)
         })
+    }
+
+    /// The sizes in the names of columns. A fraction without a unit is of the one that is stated, else of the one that all others have.
+    fn sizes_in_names(&mut self, sizes: &[(usize, SizeText)]) -> Vec<(usize, SizeText)> {
+        let table = self.table;
+        let name = |column: usize| table.header().get(column).map_or("", String::as_str);
+        let fraction = |column: usize| match fraction_of_unit(name(column)) {
+            Some((number, None)) => Some(number),
+            _ => None,
+        };
+        let mut others = (sizes.iter())
+            .filter(|(column, _)| fraction(*column).is_none())
+            .map(|(_, size)| size.number.and_then(|(_, unit)| unit));
+        let first = others.next().flatten();
+        let is_of_all = |first: &SizeUnit| others.all(|unit| unit == Some(*first));
+        let of_all = first
+            .filter(|first| first.unit != LengthUnit::Inch)
+            .filter(is_of_all);
+        let line = table.header_line();
+        let mut found = Vec::with_capacity(sizes.len());
+        for &(column, size) in sizes {
+            let unit = match self.is_of_its_unit(column) {
+                true => Some(None),
+                false => of_all.map(Some),
+            };
+            if let (Some(unit), Some(number)) = (unit, fraction(column)) {
+                self.repairs.fraction(line);
+                found.push((column, SizeText::of_number(number, unit)));
+                continue;
+            }
+            if let (Some(_), Some((number, true, _))) = (size.number, number_and_unit(name(column)))
+            {
+                let numbers = &mut self.repairs.numbers;
+                numbers.thousands_apart(line, name(column), number);
+            }
+            found.push((column, size));
+        }
+        found
     }
 
     fn percentiles(&mut self, columns: &[PercentColumn]) -> Result<Vec<RawCurve>, Fault> {

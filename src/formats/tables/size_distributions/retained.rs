@@ -3,7 +3,8 @@
 //! - Cumulative percent retained: 100 less it passes.
 //! - Percent or mass of each sieve: what is on no sieve of that opening or a larger one passes, over the sum of all
 //!   sieves and the pan. Where no line says what is in the pan, percents leave it by what is missing to 100, and masses by
-//!   what is missing to the line of the total; where there is none, nobody knows how much passed the last sieve.
+//!   what is missing to the line of the total; where there is none, or it is what the sieves add up to (rounded, perhaps), nobody
+//!   knows how much passed the last sieve.
 //!   What was washed out before counts with the pan.
 //! - Cumulative mass retained: the same over the total. A pan's line is the sum of all or its own, as the total says.
 //! - Mass that does not say which, and never falls towards finer sieves, is what its total says, else refused.
@@ -117,6 +118,7 @@ impl OnSieves {
             pan: None,
             washed: None,
             total: None,
+            total_digit: 0.0,
         }
     }
 
@@ -318,7 +320,7 @@ impl OnSieves {
                     rounded(total)
                 )),
                 (Some(_), _) => Ok(each),
-                (None, Some(total)) if self.washed.is_none() && is_near(each, total, 1e-9) => Err((
+                (None, Some(total)) if self.washed.is_none() && self.is_sum(each, total) => Err((
                     "the total is the sum of the sieves alone: nothing says how much passed the finest".to_owned(),
                     "give what is in the pan in a line 'pan' (0 where nothing is)",
                 )),
@@ -335,6 +337,11 @@ impl OnSieves {
                 )
             }),
         }
+    }
+
+    /// Whether the total is what the sieves add up to, up to the rounding of the last digit that is shown of it.
+    fn is_sum(self, each: f64, total: f64) -> bool {
+        (each - total).abs() <= 0.5 * self.total_digit + 1e-9 * total.abs()
     }
 
     /// What percents are, of sieves from the coarsest on; `None` where they may be both.

@@ -2,7 +2,7 @@
 
 use super::size_unit::SizeUnit;
 use crate::fragmentation::SieveSeries;
-use crate::tables::table::split_number;
+use crate::tables::table::number_and_unit;
 use crate::units::LengthUnit;
 
 /// A size as the name of a column or as a cell: "10 mm", "0.5", "No. 4".
@@ -17,17 +17,40 @@ pub(super) struct SizeText {
 impl SizeText {
     /// The size that the name of a column is; its decimal sign may be a comma.
     pub(super) fn of_name(name: &str) -> Option<Self> {
-        let (number, rest) = split_number(name.trim());
-        let unit = SizeUnit::of(rest);
-        let number = number.replace(',', ".").parse::<f64>().ok();
-        let number = number.filter(|n| n.is_finite() && (unit.is_some() || rest.trim().is_empty()));
+        let number = match fraction_of_unit(name) {
+            Some((number, Some(unit))) => Some((number, Some(unit))),
+            _ => number_of_name(name),
+        };
         let sieve_mm = sieve_mm(name);
         let found = number.is_some() || sieve_mm.is_some();
-        found.then_some(Self {
-            number: number.map(|number| (number, unit)),
-            sieve_mm,
-        })
+        found.then_some(Self { number, sieve_mm })
     }
+
+    /// A number that no sieve is called.
+    pub(super) fn of_number(number: f64, unit: Option<SizeUnit>) -> Self {
+        Self {
+            number: Some((number, unit)),
+            sieve_mm: None,
+        }
+    }
+
+    /// What a cell may be that has a fraction, the likeliest first: inches, or of the unit that is stated elsewhere or behind it.
+    pub(super) fn of_fraction(cell: &str) -> Vec<Self> {
+        let inch = SizeUnit::plain(LengthUnit::Inch);
+        let inches = fraction_of_inches(cell).map(|number| Self {
+            number: Some((number, Some(inch))),
+            sieve_mm: sieve_mm(cell),
+        });
+        let of_unit = fraction_of_unit(cell).map(|(number, unit)| Self::of_number(number, unit));
+        inches.into_iter().chain(of_unit).collect()
+    }
+}
+
+/// The number that the name of a column is, with its unit.
+fn number_of_name(name: &str) -> Option<(f64, Option<SizeUnit>)> {
+    let (number, _, rest) = number_and_unit(name.trim())?;
+    let unit = SizeUnit::of(rest);
+    (unit.is_some() || rest.trim().is_empty()).then_some((number, unit))
 }
 
 /// Fractions that are one character.
@@ -52,25 +75,37 @@ fn spelt_out(cell: &str) -> String {
 /// Inches with a fraction, as no sieve of ASTM E11 may be called: "15 3/4", "3-5/8 in.", "1½". Only halves, quarters and so on down to
 /// sixty-fourths are fractions of inches.
 pub(super) fn fraction_of_inches(cell: &str) -> Option<f64> {
-    let text = spelt_out(cell);
-    let end = text.find(|c: char| !c.is_ascii_digit() && !" -/".contains(c));
-    let (number, unit) = text.split_at_checked(end.unwrap_or(text.len()))?;
+    let (whole, [above, below], unit) = fraction_and_unit(cell)?;
     let inch = SizeUnit::plain(LengthUnit::Inch);
-    if !unit.is_empty() && SizeUnit::of(unit) != Some(inch) {
-        return None;
-    }
-    let (whole, [above, below]) = parts_of_fraction(number)?;
-    let is_of_inches =
-        below.is_power_of_two() && (2..=64).contains(&below) && (1..below).contains(&above);
+    let is_of_inches = unit.is_none_or(|unit| unit == inch)
+        && below.is_power_of_two()
+        && (2..=64).contains(&below)
+        && (1..below).contains(&above);
     is_of_inches.then(|| f64::from(whole) + f64::from(above) / f64::from(below))
 }
 
-/// A fraction without a unit, of the unit that the column states: "1 1/2", "2/3", "½".
-pub(super) fn bare_fraction(cell: &str) -> Option<f64> {
-    let (whole, [above, below]) = parts_of_fraction(&spelt_out(cell))?;
-    (1..below)
-        .contains(&above)
-        .then(|| f64::from(whole) + f64::from(above) / f64::from(below))
+/// A fraction of any other unit, which stands behind it or else is what is stated of sizes: "1 1/2", "2/3 ft", "½".
+pub(super) fn fraction_of_unit(cell: &str) -> Option<(f64, Option<SizeUnit>)> {
+    let (whole, [above, below], unit) = fraction_and_unit(cell)?;
+    let inch = SizeUnit::plain(LengthUnit::Inch);
+    let is_fraction = unit != Some(inch) && (1..below).contains(&above);
+    is_fraction.then(|| {
+        let number = f64::from(whole) + f64::from(above) / f64::from(below);
+        (number, unit)
+    })
+}
+
+/// The whole, what stands above and below the line, and the unit behind it.
+fn fraction_and_unit(cell: &str) -> Option<(u32, [u32; 2], Option<SizeUnit>)> {
+    let text = spelt_out(cell);
+    let end = text.find(|c: char| !c.is_ascii_digit() && !" -/".contains(c));
+    let (number, unit) = text.split_at_checked(end.unwrap_or(text.len()))?;
+    let unit = match unit {
+        "" => None,
+        unit => Some(SizeUnit::of(unit)?),
+    };
+    let (whole, parts) = parts_of_fraction(number)?;
+    Some((whole, parts, unit))
 }
 
 /// The whole, and what stands above and below the line.
@@ -148,14 +183,17 @@ mod tests {
         ] {
             assert_eq!(fraction_of_inches(cell), wanted, "{cell}");
         }
+        let foot = Some(SizeUnit::plain(LengthUnit::Foot));
         for (cell, wanted) in [
-            ("1 1/2", Some(1.5)),
-            ("½", Some(0.5)),
-            ("2/3", Some(2.0 / 3.0)),
+            ("1 1/2", Some((1.5, None))),
+            ("½", Some((0.5, None))),
+            ("2/3", Some((2.0 / 3.0, None))),
+            ("2 1/2 ft", Some((2.5, foot))),
             ("1/2 in", None),
+            ("1/2 dozen", None),
             ("3/2", None),
         ] {
-            assert_eq!(bare_fraction(cell), wanted, "{cell}");
+            assert_eq!(fraction_of_unit(cell), wanted, "{cell}");
         }
     }
 

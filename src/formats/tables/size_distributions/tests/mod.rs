@@ -1,5 +1,6 @@
 //! Every layout, every repair with its sentence.
 
+mod cells;
 mod faults;
 mod protocols;
 mod units;

@@ -113,6 +113,56 @@ fn a_total_that_does_not_fit_is_said() {
     );
 }
 
+/// 12.34 and 45.61 g are on the sieves, 57.95 in all: written with a decimal or none that is 58.0, 57.9 or 58. Of 58.4 g 0.45 passed.
+#[test]
+fn a_total_that_was_rounded_says_no_more_than_the_sieves() {
+    let text =
+        |name: &str, total: &str| format!("sieve_mm,{name}\n40,12.34\n20,45.61\ntotal,{total}\n");
+    for name in ["each retained g", "Mass retained (g)"] {
+        for total in ["57.95", "58.0", "57.9", "58"] {
+            let (line, said) = fault(&text(name, total));
+            assert_eq!(line, Some(2), "{name} {total}");
+            assert_eq!(
+                said,
+                "the total is the sum of the sieves alone: nothing says how much passed the finest; give what is in the pan in a line 'pan' (0 where nothing is)",
+                "{name} {total}"
+            );
+        }
+        let (points, _) = passing(&text(name, "58.4"));
+        assert!((points[0][1] - 45.0 / 58.4).abs() < 1e-9, "{points:?}");
+    }
+}
+
+/// A line that is left out of a protocol is missing in its sum.
+#[test]
+fn no_line_of_a_protocol_is_to_be_left_out() {
+    for (lines, line, wanted) in [
+        (
+            "40,10\n20,5\npan,n.d.\n",
+            4,
+            "column retained g: 'n.d.' is not a number; correct it",
+        ),
+        (
+            "40,10\n20,5\npan,5\ntotal,twenty\n",
+            5,
+            "column retained g: 'twenty' is not a number; correct it",
+        ),
+        (
+            "40,10\n20,\npan,5\n",
+            3,
+            "column retained g is empty; fill it in",
+        ),
+        (
+            "40,10\n,5\npan,5\n",
+            3,
+            "column sieve_mm has no size; fill it in",
+        ),
+    ] {
+        let text = format!("sieve_mm,retained g\n{lines}");
+        assert_eq!(fault(&text), (Some(line), wanted.to_owned()), "{text}");
+    }
+}
+
 #[test]
 fn several_samples_are_told_apart_by_name() {
     let text = "sample,sieve mm,% retained,mass\nA,40,10,1\nA,20,60,2\nA,pan,30,3\nB,40,0,4\nB,20,55,5\nB,pan,45,6\n";

@@ -330,6 +330,60 @@ fn fractions_are_of_the_unit_that_is_stated() {
     }
 }
 
+/// A half of a foot is 152.4 mm and 3/8 of an inch are 9.525 mm, which no sieve is; 3/8 mm are 0.375 mm.
+#[test]
+fn fractions_are_of_a_unit_that_is_stated_elsewhere() {
+    for (text, wanted, is_said) in [
+        (
+            "sizes in mm\nsize,passing\n2,100\n3/8,50\n1/4,20\n",
+            0.375,
+            true,
+        ),
+        (
+            "Units: feet\nsize,passing\n2,100\n1/2,50\n1/4,20\n",
+            152.4,
+            true,
+        ),
+        (
+            "photo,P20 (mm),P50 (mm),P80 (mm)\na,1/4,3/8,2\n",
+            0.375,
+            true,
+        ),
+        (
+            "photo,P20 (in),P50 (in),P80 (in)\na,1/4,3/8,2\n",
+            9.525,
+            true,
+        ),
+        ("Sieve (cm),1/4,1/2,2\n% passing,20,50,100\n", 5.0, true),
+        ("photo,1/4,1/2,2 ft,3 ft\na,20,50,90,100\n", 152.4, true),
+        ("photo,1/4 ft,1/2 ft,2 ft\na,20,50,90\n", 152.4, false),
+        (
+            "size,unit,passing\n2,ft,100\n1/2,ft,50\n1/4,ft,20\n",
+            152.4,
+            false,
+        ),
+        // Beside names of sieves, and under inches, it is the sieve's: ASTM E11 has 12.5 mm and 9.5 mm.
+        (
+            "sizes in mm\nsieve,passing\n25,100\n1/2,50\nNo. 4,20\n",
+            12.5,
+            false,
+        ),
+        (
+            "sizes in inches\nsize,passing\n2,100\n3/8,50\n1/4,20\n",
+            9.5,
+            false,
+        ),
+        ("photo,3/8,1/2,1 in\na,50,60,90\n", 9.5, false),
+    ] {
+        let found = p50_mm(text);
+        assert!((found / wanted - 1.0).abs() < 1e-9, "{text}: {found}");
+        let (_, said) = read(text);
+        let sentence = "a fraction is of the unit that is stated of sizes, not of inches";
+        let is_there = said.iter().any(|said| said.starts_with(sentence));
+        assert_eq!(is_there, is_said, "{text}: {said:?}");
+    }
+}
+
 /// No sieve is called so: 10.6 inches beside names of sieves are no 26.5 mm.
 #[test]
 fn inches_with_a_point_are_no_names() {

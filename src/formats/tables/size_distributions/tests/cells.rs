@@ -1,0 +1,105 @@
+//! How spreadsheets write names, lines and numbers.
+
+use super::*;
+
+/// As Excel writes names that are wrapped in their cells.
+#[test]
+fn a_line_break_in_a_name_is_a_blank() {
+    let wanted = [[10.0, 20.0], [20.0, 50.0]];
+    for text in [
+        "Size (mm),\"Passing\n(%)\"\n10,20\n20,50\n",
+        "\"Size\n(mm)\",\"Passing\n(%)\"\n10,20\n20,50\n",
+        "\"Sieve\r\nsize\r\n(mm)\";\"Passing\r\n(%)\"\r\n10;20\r\n20;50\r\n",
+        "\"Size\n\n(mm)\"\t\"Passing \"\"cum.\"\"\n# of all (%)\"\n10\t20\n20\t50\n",
+    ] {
+        assert_eq!(points(text), wanted, "{text}");
+        assert!(is_table(text, true), "{text}");
+    }
+    // Lines keep their numbers, and titles may be wrapped, too.
+    let text = "\"Size\n(mm)\",\"Passing\n(%)\"\n10,20\n20,many\n";
+    assert_eq!(
+        fault(text),
+        (
+            Some(5),
+            "column Passing (%): 'many' is not a number; correct it, or leave the line out"
+                .to_owned()
+        )
+    );
+    let text = "\"Lab\nof the mine\",\n\"Size\n(mm)\",\"Passing\n(%)\"\n10,20\n20,50\n";
+    let (set, said) = read(text);
+    assert_eq!(set.curves[0].distribution.points(), wanted);
+    assert_eq!(
+        said,
+        ["2 lines above the names of the columns are passed over"]
+    );
+}
+
+/// It counts the lines. Other lines that begin with # are comments.
+#[test]
+fn a_first_column_may_be_called_number_sign() {
+    let wanted = [[10.0, 20.0], [20.0, 50.0]];
+    for text in [
+        "#,size (mm),passing (%)\n1,10,20\n2,20,50\n",
+        "# of the mine\n# , size (mm) , passing (%)\n1,10,20\n2,20,50\n",
+        "#;\"size\n(mm)\";passing (%)\n1;10;20\n2;20;50\n",
+        "Lab of the mine\n#\tsize (mm)\tpassing (%)\n1\t10\t20\n2\t20\t50\n",
+    ] {
+        let (set, said) = read(text);
+        assert_eq!(set.curves[0].distribution.points(), wanted, "{text}");
+        let unused = "columns that are not used: #".to_owned();
+        assert!(said.contains(&unused), "{text}: {said:?}");
+    }
+    let (set, _) = read("#,size (mm),sieve,cloud\n1,10,20,25\n2,20,50,55\n");
+    assert_eq!(names(&set), ["sieve||", "cloud||"]);
+    for text in [
+        "#,made by,the lab\nsize_mm,passing,note\n10,20,a\n20,50,b\n",
+        "#,old,note\nnr,size_mm,passing\n1,10,20\n2,20,50\n",
+        "#,5,10\nnr,size_mm,passing\n1,10,20\n2,20,50\n",
+        "size_mm,passing,note\n10,20,a\n#,15,b\n20,50,b\n",
+    ] {
+        let (set, _) = read(text);
+        assert_eq!(set.curves[0].distribution.points(), wanted, "{text}");
+    }
+    let (_, text) = fault("#,made by the lab\n1,10,20\n2,20,50\n");
+    assert!(
+        text.starts_with("the first line names no columns"),
+        "{text}"
+    );
+}
+
+/// As Excel writes them in French and Swiss, with a unit behind them or not, as sizes and as names of columns.
+#[test]
+fn thousands_may_stand_apart_everywhere() {
+    let wanted = [[500.0, 20.0], [1200.0, 50.0], [12_500.0, 100.0]];
+    for (text, how) in [
+        (
+            "size_mm;passing\n500;20\n1 200;50\n12 500;100\n",
+            "'1 200' as 1200 (2 numbers, first on line 3)",
+        ),
+        (
+            "size;passing\n500 mm;20\n1'200 mm;50\n12'500 mm;100\n",
+            "'1'200 mm' as 1200 (2 numbers, first on line 3)",
+        ),
+        (
+            "size;unit;passing\n500;mm;20\n1\u{a0}200;mm;50\n1250;cm;100\n",
+            "'1\u{a0}200 mm' as 1200 (1 number, first on line 3)",
+        ),
+        (
+            "photo;500 mm;1\u{202f}200 mm;12\u{2009}500 mm\na;20;50;100\n",
+            "'1\u{202f}200 mm' as 1200 (2 numbers, first on line 1)",
+        ),
+        (
+            "Sieve (mm);500;1 200;12 500\n% passing;20;50;100\n",
+            "'1 200' as 1200 (2 numbers, first on line 1)",
+        ),
+        (
+            "photo;P20 (mm);P50 (mm);P100 (mm)\na;500;1 200;12 500\n",
+            "'1 200' as 1200 (2 numbers, first on line 2)",
+        ),
+    ] {
+        let (set, said) = read(text);
+        assert_eq!(set.curves[0].distribution.points(), wanted, "{text}");
+        let sentence = format!("thousands that stand apart are read as one number: {how}");
+        assert_eq!(said, [sentence], "{text}");
+    }
+}
