@@ -29,6 +29,8 @@ const REMEDY: &str = "copy or export it again";
 
 /// Directories that are looked through for the image, and for its mask.
 const MOST_DIRECTORIES: usize = 64;
+/// And where images are counted, of which a stack has many.
+const MOST_COUNTED: usize = 1000;
 
 /// The largest tile or strip, in bytes when taken apart.
 const MOST_BYTES: u64 = 1 << 32;
@@ -145,21 +147,21 @@ impl<R: Read + Seek> TiffFile<R> {
         None
     }
 
-    /// Whether another image of the same size follows, which is neither an overview nor a mask. The tags are those of another
-    /// directory afterwards.
-    pub fn has_another(&mut self, image: &Layout) -> bool {
-        for _ in 1..MOST_DIRECTORIES {
+    /// How many images there are of the size of this one, itself with them, which are neither overviews nor masks, and whether
+    /// these are all: no more than 1000 directories are looked through. The tags are those of another directory afterwards.
+    pub fn images_alike(&mut self, image: &Layout) -> (usize, bool) {
+        let mut count = 1;
+        // One that leads back to an earlier one is an error to the crate that reads them: the walk ends there.
+        for _ in 1..MOST_COUNTED {
             let Some(kind) = self.next_kind() else {
-                return false;
+                return (count, true);
             };
             let has_its_size = self
                 .size()
                 .is_ok_and(|size| size == (image.width, image.height));
-            if kind == 0 && has_its_size {
-                return true;
-            }
+            count += usize::from(kind == 0 && has_its_size);
         }
-        false
+        (count, !self.decoder.more_images())
     }
 
     /// Goes to the next directory, and says whether it is an overview or a mask (0: neither); `None` behind the last.

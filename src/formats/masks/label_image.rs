@@ -206,8 +206,13 @@ fn tiff(bytes: &[u8], photo: &OutlinedPhoto<'_>, notes: &mut Notes) -> Result<La
         let what = "its numbers are compressed as JPEG, which changes them";
         return Err(Fault::new(what, REMEDY));
     }
-    if file.has_another(&layout) {
-        let what = "it is a stack of images, where one is to have the numbers of all fragments";
+    let (count, is_all) = file.images_alike(&layout);
+    if count > 1 {
+        let or_more = if is_all { "" } else { " or more" };
+        let (width, height) = (layout.width, layout.height);
+        let what = format!(
+            "it is a stack of images, {count}{or_more} of {width} x {height} pixels, where one is to have the numbers of all fragments"
+        );
         let remedy = "save one label image (in ImageJ the ROIs as labels), or the outlines as COCO or GeoJSON";
         return Err(Fault::new(what, remedy));
     }

@@ -259,8 +259,29 @@ fn stacks_are_refused() {
     let one = of_bytes(&written(&[(4, 3, 0), (2, 2, 1), (4, 3, 4), (2, 2, 0)])).unwrap();
     let expected: Vec<u32> = (0..12).map(|at| at * 3).collect();
     assert_eq!(one.labels.labels, expected);
-    let stack = of_bytes(&written(&[(4, 3, 0), (2, 2, 1), (4, 3, 0)])).unwrap_err();
-    assert!(stack.what.starts_with("it is a stack of images"), "{stack}");
+    let said = |bytes: &[u8]| of_bytes(bytes).unwrap_err().what;
+    let stack = written(&[(4, 3, 0), (2, 2, 1), (4, 3, 0), (4, 3, 0)]);
+    let of_three = "it is a stack of images, 3 of 4 x 3 pixels, where one ";
+    assert!(said(&stack).starts_with(of_three), "{}", said(&stack));
+    // One with a mask of each of very many fragments.
+    let long = said(&written(&[(4, 3, 0); 1001]));
+    assert!(long.contains(", 1000 or more of 4 x 3 pixels"), "{long}");
+    // A last directory that leads back to the first is no further image, and no way without an end.
+    let number = |at: usize| u32::from_le_bytes(stack[at..at + 4].try_into().unwrap());
+    let first = number(4);
+    let (mut next, mut links) = (first, Vec::new());
+    while next != 0 {
+        let directory = next as usize;
+        let entries = u16::from_le_bytes([stack[directory], stack[directory + 1]]);
+        let link = directory + 2 + 12 * usize::from(entries);
+        links.push(link);
+        next = number(link);
+    }
+    assert_eq!(links.len(), 4);
+    let mut in_circles = stack.clone();
+    in_circles[links[3]..links[3] + 4].copy_from_slice(&first.to_le_bytes());
+    let circle = said(&in_circles);
+    assert!(circle.contains(", 2 of 4 x 3 pixels"), "{circle}");
 }
 
 #[test]
