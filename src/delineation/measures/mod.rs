@@ -156,8 +156,13 @@ pub(crate) fn circle_diameter(area: f64) -> f64 {
     (4.0 * area / std::f64::consts::PI).sqrt()
 }
 
-/// The area on the surface that a pixel shows, from where its neighbours' rays meet; `None` where they do not,
-/// or where the surface breaks off between them.
+/// The area on the surface that a pixel shows; `None` where its neighbours' rays do not meet the surface, or where it breaks off
+/// between them.
+///
+/// It is that of the quadrilateral in which the rays of the pixel's corners meet the plane through its own point and those of two
+/// neighbours: with n the plane's normal, r the ray of depth 1 and w = n·r, all of the pixel's middle, and w + a ± b and w - a ± b at
+/// its corners, the area across the axis times |n| / |w| / ((1 - ((a + b) / w)²) (1 - ((a - b) / w)²)). A triangle in a plane at the
+/// distance d from the camera has half of |det(P, Q, R)| / d, and depths along a plane go as 1 / w.
 fn on_surface(field: &ScaleField, x: u32, y: u32) -> Option<f64> {
     let here = field.at(x, y)?;
     let beside = |ahead: Option<(u32, u32)>, back: Option<(u32, u32)>| -> Option<DVec3> {
@@ -175,10 +180,19 @@ fn on_surface(field: &ScaleField, x: u32, y: u32) -> Option<f64> {
         (y + 1 < rows).then_some((x, y + 1)),
         y.checked_sub(1).map(|y| (x, y)),
     )?;
+    let normal = field.pose().rotation.transpose() * across.cross(along);
+    let ray = field.direction_at(x, y)?;
+    let to_plane = normal.dot(ray);
+    let half_way = |other: DVec3| normal.dot(other - ray) / 2.0 / to_plane;
+    let right = half_way(field.direction_at(x + 1, y)?);
+    let down = half_way(field.direction_at(x, y + 1)?);
+    let [one, other] = [right + down, right - down];
+    let corners = (1.0 - one * one) * (1.0 - other * other);
     let flat = 1.0 / (here.scale * here.scale);
-    let area = across.cross(along).length();
-    // Steeper than 80 degrees is a step from one fragment to one behind it.
-    (area < 6.0 * flat).then_some(area)
+    let area = flat * normal.length() / to_plane.abs() / corners;
+    // Beyond 1 a corner's ray does not meet the plane. Steeper than 80 degrees is a step from one fragment to one behind it.
+    let is_met = one.abs() < 1.0 && other.abs() < 1.0;
+    (is_met && area < 6.0 * flat).then_some(area)
 }
 
 /// What is summed over a fragment's pixels.
