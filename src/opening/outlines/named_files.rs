@@ -1,5 +1,6 @@
 //! Which files of a folder are outlines of a photo, by their names.
 
+use std::cmp::Reverse;
 use std::collections::VecDeque;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -41,13 +42,10 @@ const ENDINGS: [&str; 20] = [
 const OF_LABELS: usize = 12;
 
 /// What fragscale writes beside label images, of which nobody reads fragments.
-const BESIDE: [&str; 5] = [
-    "_outlines.png",
-    "_outlines.json",
-    "_world.geojson",
-    "fragments_coco.json",
-    "fragments_cvat.xml",
-];
+const BESIDE: [&str; 3] = ["_outlines.png", "_outlines.json", "_world.geojson"];
+
+/// What it writes of all photos beside label images: it says the same as they do, and is read where they are not there.
+const OWN_OF_MANY: [&str; 2] = ["fragments_coco.json", "fragments_cvat.xml"];
 
 /// The files of a folder and of those within, those nearer first, by name.
 pub(super) fn files_below(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
@@ -80,17 +78,34 @@ pub(super) fn files_below(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
 }
 
 /// The files of many photos each, where a folder has no others of outlines: pictures that are called as photos are may be the
-/// photos. An export lies in a folder of its own, perhaps in folders for outlines and photos.
-pub(super) fn files_of_many(files: &[PathBuf]) -> Option<Vec<(PathBuf, MaskFile)>> {
+/// photos. An export lies in a folder of its own, perhaps in folders for outlines and photos. Fragscale's own are read where nothing
+/// else may be outlines.
+///
+/// # Errors
+/// Where one of fragscale's own cannot be read.
+pub(super) fn files_of_many(
+    files: &[PathBuf],
+) -> Result<Option<Vec<(PathBuf, MaskFile)>>, FileError> {
+    if files.iter().any(|path| may_be_outlines(path)) {
+        return Ok(others_of_many(files));
+    }
+    let own = files.iter().filter(|path| ends_as(path, &OWN_OF_MANY));
+    let own: Vec<&PathBuf> = own.collect();
+    if own.is_empty() || own.len() > MOST_OF_MANY {
+        return Ok(None);
+    }
+    let read = own
+        .into_iter()
+        .map(|path| MaskFile::read(path).map(|file| (path.clone(), file)));
+    read.collect::<Result<Vec<_>, FileError>>().map(Some)
+}
+
+/// The files of many photos that others wrote.
+fn others_of_many(files: &[PathBuf]) -> Option<Vec<(PathBuf, MaskFile)>> {
     let may_be = files.iter().filter(|path| may_be_outlines(path));
     let (pictures, texts): (Vec<&PathBuf>, Vec<&PathBuf>) =
         may_be.partition(|path| is_picture(path));
-    let is_of_one = |path: &&PathBuf| {
-        let name = lower_name(path);
-        ENDINGS[..OF_LABELS]
-            .iter()
-            .any(|ending| name.ends_with(ending))
-    };
+    let is_of_one = |path: &&PathBuf| ends_as(path, &ENDINGS[..OF_LABELS]);
     if texts.is_empty() || texts.len() > MOST_OF_MANY || pictures.iter().any(is_of_one) {
         return None;
     }
@@ -104,9 +119,30 @@ pub(super) fn files_of_many(files: &[PathBuf]) -> Option<Vec<(PathBuf, MaskFile)
         .then_some(read)
 }
 
-/// Whether a file of many photos has outlines of one that is called so.
-pub(super) fn names(file: &MaskFile, photo: &str) -> bool {
-    file.photos().any(|other| stem(other) == stem(photo))
+/// Whether a file of many photos has outlines that may be of one that is called so: not those that name another of the `photos`, nor a
+/// file that lies with another of this name.
+pub(super) fn names(path: &Path, file: &MaskFile, photo: &str, photos: &[&str]) -> bool {
+    let shared = folders_shared(path, photo);
+    let lies_with_another = photos
+        .iter()
+        .any(|other| is_namesake(other, photo) && folders_shared(path, other) > shared);
+    let may_name =
+        |other: &str| stem(other) == stem(photo) && (other == photo || !photos.contains(&other));
+    !lies_with_another && file.photos().any(may_name)
+}
+
+/// Those of many files of many photos that may be of one, those that lie in its folders first.
+pub(super) fn with_photo<'a>(
+    files: &'a [(PathBuf, MaskFile)],
+    photo: &str,
+    photos: &[&str],
+) -> Vec<&'a (PathBuf, MaskFile)> {
+    let mut its: Vec<&(PathBuf, MaskFile)> = files
+        .iter()
+        .filter(|(path, file)| names(path, file, photo, photos))
+        .collect();
+    its.sort_by_key(|(path, _)| Reverse(folders_shared(path, photo)));
+    its
 }
 
 /// Whether the files of two photos have one name, whatever folders they are in.
@@ -114,14 +150,33 @@ pub(super) fn is_namesake(one: &str, other: &str) -> bool {
     stem(one).eq_ignore_ascii_case(stem(other))
 }
 
-/// Whether a file of outlines lies in a folder that is called as the photo's, or has that folder in its name.
-pub(super) fn is_told_by_folder(path: &Path, photo: &str) -> bool {
-    let Some(folder) = photo.rsplit(['/', '\\']).nth(1) else {
-        return false;
+/// The folders of a photo's name, the last first.
+fn folders(photo: &str) -> impl Iterator<Item = &str> {
+    let above = photo.rsplit(['/', '\\']).skip(1);
+    above.filter(|folder| !folder.is_empty() && *folder != ".")
+}
+
+/// Whether a photo's name says a folder.
+pub(super) fn has_folder(photo: &str) -> bool {
+    folders(photo).next().is_some()
+}
+
+/// In how many folders a file lies that are called as the photo's, from the last.
+pub(super) fn folders_shared(path: &Path, photo: &str) -> usize {
+    let above = path.ancestors().skip(1).filter_map(Path::file_name);
+    folders(photo)
+        .zip(above)
+        .take_while(|(its, own)| own.eq_ignore_ascii_case(its))
+        .count()
+}
+
+/// Whether the folders that a file lies in tell a photo from all others of its name.
+pub(super) fn is_told_apart(path: &Path, photo: &str, photos: &[&str]) -> bool {
+    let shared = folders_shared(path, photo);
+    let is_as_near = |other: &&str| {
+        *other != photo && is_namesake(other, photo) && folders_shared(path, other) >= shared
     };
-    let parent = path.parent().and_then(Path::file_name).unwrap_or_default();
-    parent.to_string_lossy().eq_ignore_ascii_case(folder)
-        || lower_name(path).starts_with(&with_folders(photo))
+    shared > 0 && !photos.iter().any(is_as_near)
 }
 
 /// A photo's name with its folders and without what is behind its last dot, as fragscale calls files of photos of one name.
@@ -138,33 +193,58 @@ fn lower_name(path: &Path) -> String {
 }
 
 fn is_picture(path: &Path) -> bool {
-    let name = lower_name(path);
-    [".png", ".tif", ".tiff"]
-        .iter()
-        .any(|kind| name.ends_with(kind))
+    ends_as(path, &[".png", ".tif", ".tiff"])
 }
 
-/// The files of a folder that may be a photo's outlines, the likeliest first: those that the photo's folder tells, then the nearer
-/// ones.
-pub(super) fn candidates<'a>(files: &'a [PathBuf], photo: &str) -> impl Iterator<Item = &'a Path> {
+/// Whether a file's name has one of these endings, in letters of any case.
+fn ends_as(path: &Path, endings: &[&str]) -> bool {
+    let name = lower_name(path);
+    endings.iter().any(|ending| name.ends_with(ending))
+}
+
+/// The files of a folder that may be a photo's outlines, the likeliest first: those that the photo's folders tell, then the nearer
+/// ones. Those that another of the `photos` is told better by are that one's.
+pub(super) fn candidates<'a>(
+    files: &'a [PathBuf],
+    photo: &str,
+    photos: &[&str],
+) -> impl Iterator<Item = &'a Path> {
     let ranked = files.iter().filter_map(|path| {
-        let rank = rank(path, photo)?;
+        let told = told(path, photo).filter(|_| !is_anothers(path, photo, photos))?;
         let depth = path.components().count();
-        Some((
-            (!is_told_by_folder(path, photo), depth, rank),
-            path.as_path(),
-        ))
+        let by_folders = Reverse((told.folders, told.is_by_name_alone));
+        Some((by_folders, depth, told.ending, path.as_path()))
     });
-    let mut ranked: Vec<((bool, usize, usize), &Path)> = ranked.collect();
+    let mut ranked: Vec<_> = ranked.collect();
     ranked.sort();
-    ranked.into_iter().map(|(_, path)| path)
+    ranked.into_iter().map(|(.., path)| path)
+}
+
+/// Whether a file tells another photo better than this one: by its whole name (a_IMG.jpg before a/IMG.jpg), then by more folders.
+pub(super) fn is_anothers(path: &Path, photo: &str, photos: &[&str]) -> bool {
+    let claim = |photo: &str| told(path, photo).map(|told| (told.is_by_name_alone, told.folders));
+    let own = claim(photo);
+    photos.iter().any(|other| claim(other) > own)
+}
+
+/// Another photo that takes the same file of a folder for its own.
+pub(super) fn also_taken_by<'p>(
+    path: &Path,
+    files: &[PathBuf],
+    photo: &str,
+    photos: &[&'p str],
+) -> Option<&'p str> {
+    let mut others = photos
+        .iter()
+        .filter(|other| **other != photo && told(path, other).is_some());
+    let takes = |other: &&&str| candidates(files, other, photos).next() == Some(path);
+    others.find(takes).copied()
 }
 
 /// Whether outlines may be in a file of this name: not what fragscale writes beside label images.
 pub(super) fn may_be_outlines(path: &Path) -> bool {
-    let name = lower_name(path);
     let kinds = [".png", ".tif", ".tiff", ".json", ".geojson", ".xml"];
-    kinds.iter().any(|kind| name.ends_with(kind)) && !BESIDE.iter().any(|own| name.ends_with(own))
+    ends_as(path, &kinds) && !ends_as(path, &BESIDE) && !ends_as(path, &OWN_OF_MANY)
 }
 
 /// Whether a file is the photo itself.
@@ -173,18 +253,41 @@ pub(super) fn is_photo(path: &Path, photo: &str) -> bool {
     name.is_some_and(|name| name.to_lowercase() == last_segment(photo).to_lowercase())
 }
 
-/// Which ending a photo's file has; `None` where it is not named as the photo, or is the photo.
-pub(super) fn rank(path: &Path, photo: &str) -> Option<usize> {
-    let name = path.file_name()?.to_str()?.to_lowercase();
+/// How a file of one photo tells which.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Told {
+    /// So many of the photo's folders: those that it lies in, or all that stand in its name.
+    pub(super) folders: usize,
+    /// Whether it is named as the photo without its folders.
+    pub(super) is_by_name_alone: bool,
+    /// Which ending it has, in the order in which they are looked for.
+    pub(super) ending: usize,
+}
+
+/// How a file tells that it is of a photo; `None` where it is not named as the photo, or is the photo.
+pub(super) fn told(path: &Path, photo: &str) -> Option<Told> {
     if is_photo(path, photo) {
         return None;
     }
-    let ending = [with_folders(photo), stem(photo).to_lowercase()]
-        .iter()
-        .find_map(|of_photo| name.strip_prefix(of_photo.as_str()))?;
-    let known = ENDINGS.iter().position(|known| ending == *known);
-    let of_model = ending.starts_with('_') && ending.ends_with("_pred.tif");
-    known.or(of_model.then_some(ENDINGS.len()))
+    let name = path.file_name()?.to_str()?.to_lowercase();
+    let ending = |of_photo: String| {
+        let ending = name.strip_prefix(of_photo.as_str())?;
+        let known = ENDINGS.iter().position(|known| ending == *known);
+        let of_model = ending.starts_with('_') && ending.ends_with("_pred.tif");
+        known.or(of_model.then_some(ENDINGS.len()))
+    };
+    if let Some(ending) = ending(stem(photo).to_lowercase()) {
+        return Some(Told {
+            folders: folders_shared(path, photo),
+            is_by_name_alone: true,
+            ending,
+        });
+    }
+    Some(Told {
+        folders: folders(photo).count(),
+        is_by_name_alone: false,
+        ending: ending(with_folders(photo))?,
+    })
 }
 
 /// The last part of a path without what is behind its last dot.

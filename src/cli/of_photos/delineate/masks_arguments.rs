@@ -63,12 +63,12 @@ pub(super) fn with_outlines(
     chosen: Vec<usize>,
     flight: &Flight,
 ) -> (Vec<usize>, Vec<String>) {
-    let photos = &flight.parts().photos;
+    let photos = flight.parts().photos.iter();
+    let names: Vec<&str> = photos.map(|photo| photo.name.as_str()).collect();
     let (with, without): (Vec<usize>, Vec<usize>) = chosen
         .iter()
-        .partition(|index| others.is_of(&photos[**index].name));
+        .partition(|index| others.is_of(names[**index], &names));
     let mut said = Vec::new();
-    let names: Vec<&str> = photos.iter().map(|photo| photo.name.as_str()).collect();
     if !with.is_empty() && !without.is_empty() {
         said.push(format!(
             "{} of {} photos have no outlines among those of --masks, and are left out: {}",
