@@ -382,6 +382,63 @@ fn what_is_read_stays() {
     );
 }
 
+/// Two cards with a photo of one name on each, as cameras begin a folder anew: each photo has the outlines of its own folder, and one
+/// whose folder has none is left out.
+#[test]
+fn photos_of_one_name_on_two_cards() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let words = |name: &str| path(name).to_string_lossy().into_owned();
+    let of_sample = |name: &str| Path::new(&sample()).join(name);
+    for name in ["flight.toml", "pile.ply", "ost.yaml"] {
+        fs::copy(of_sample(name), path(name)).expect("a copy");
+    }
+    let mut poses = fs::read_to_string(of_sample("poses.csv")).expect("poses");
+    for (card, photo) in [("100MEDIA", "IMG_0005.jpg"), ("101MEDIA", "IMG_0004.jpg")] {
+        let name = format!("{card}/DJI_0001.jpg");
+        fs::create_dir_all(path("photos").join(card)).expect("a folder");
+        let to = path("photos").join(&name);
+        fs::copy(of_sample("photos").join(photo), to).expect("a copy");
+        poses = poses.replace(photo, &name);
+    }
+    let is_of_card = |line: &&str| line.starts_with("photo,") || line.contains("MEDIA/");
+    let poses: Vec<&str> = poses.lines().filter(is_of_card).collect();
+    fs::write(path("poses.csv"), poses.join("\n") + "\n").expect("poses");
+    let write = |card: &str, side: u32| {
+        let mut labels = image::GrayImage::new(1280, 720);
+        for (x, y) in (0..side * side).map(|at| (600 + at % side, 300 + at / side)) {
+            labels.put_pixel(x, y, image::Luma([1]));
+        }
+        let to = path("masks").join(card);
+        fs::create_dir_all(&to).expect("a folder");
+        labels.save(to.join("DJI_0001_labels.png")).expect("labels");
+    };
+    let run = |to: &str| {
+        let [flight, masks, to] = ["flight.toml", "masks", to].map(words);
+        let own = ["delineate", &flight, "--to", &to, "--masks", &masks];
+        fragscale(&[&own[..], &["--masks-of", "undistorted"]].concat())
+    };
+    let pixels = |to: &str, card: &str| {
+        let labels = path(to).join(format!("{card}_DJI_0001_labels.png"));
+        let labels = image::open(labels).expect("labels").into_luma16();
+        labels.pixels().filter(|pixel| pixel.0 == [1]).count()
+    };
+    write("100MEDIA", 100);
+    let done = run("one");
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{said}");
+    let left_out = "1 of 2 photos have no outlines among those of --masks, and are left out: \
+                    101MEDIA/DJI_0001.jpg";
+    assert!(said.contains(left_out), "{said}");
+    assert_eq!(pixels("one", "100MEDIA"), 10_000);
+    write("101MEDIA", 60);
+    let done = run("both");
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{said}");
+    assert_eq!(pixels("both", "100MEDIA"), 10_000);
+    assert_eq!(pixels("both", "101MEDIA"), 3600);
+}
+
 /// A photo in which nothing is outlined does not count in all photos together, and that is said.
 #[test]
 fn an_empty_photo_is_no_fines() {
