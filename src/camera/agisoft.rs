@@ -18,12 +18,12 @@
 
 use glam::{DMat2, DVec2, DVec3};
 
-use super::branch::invert;
+use super::branch::{invert, leads_outward};
 use super::not_invertible::NotInvertible;
-use super::polynomial::smallest_positive_root;
+use super::polynomial::{smallest_positive_root, smallest_root_of_parts};
 
-/// The squared radius up to which a frame camera's fold is looked for: tan 89.9 degrees, squared.
-const FARTHEST_SQUARED_RADIUS: f64 = 573.0 * 573.0;
+/// The radius up to which a frame camera's fold is looked for: tan 89.9 degrees.
+const FARTHEST_RADIUS: f64 = 573.0;
 
 /// What a direction becomes before the lens distorts it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,31 +44,42 @@ pub struct Agisoft {
     radial: [f64; 4],
     /// p1 p2 p3 p4.
     tangential: [f64; 4],
-    /// Squared radius at which the radial factor folds, or the projection ends.
-    fold_squared: f64,
+    /// Radius within which nothing folds whatever the tangential terms do; where there are none, that at which the radial
+    /// factor folds or the projection ends.
+    sure: f64,
+    /// Radius at which the projection ends.
+    end: f64,
 }
 
 impl Agisoft {
     /// From `k1 k2 k3 k4` and `p1 p2 p3 p4`, all finite; missing ones are 0.
     pub fn new(projection: AgisoftProjection, radial: [f64; 4], tangential: [f64; 4]) -> Self {
         use std::f64::consts::PI;
-        let end = match projection {
-            AgisoftProjection::Frame => FARTHEST_SQUARED_RADIUS,
-            AgisoftProjection::EquidistantFisheye => PI * PI,
-            AgisoftProjection::EquisolidFisheye => 4.0,
+        let (end, looked_to) = match projection {
+            AgisoftProjection::Frame => (f64::INFINITY, FARTHEST_RADIUS),
+            AgisoftProjection::EquidistantFisheye => (PI, PI),
+            AgisoftProjection::EquisolidFisheye => (2.0, 2.0),
         };
         let [k1, k2, k3, k4] = radial;
         let growth = [1.0, 3.0 * k1, 5.0 * k2, 7.0 * k3, 9.0 * k4];
-        let fold = smallest_positive_root(&growth, end);
-        let endless = match projection {
-            AgisoftProjection::Frame => f64::INFINITY,
-            AgisoftProjection::EquidistantFisheye | AgisoftProjection::EquisolidFisheye => end,
+        let [p1, p2, p3, p4] = tangential;
+        let p = 6.0 * p1.hypot(p2);
+        let sure = if p == 0.0 {
+            smallest_positive_root(&growth, looked_to.powi(2)).map_or(end, f64::sqrt)
+        } else {
+            // As long as both eigenvalues of the radial derivative are larger than what is the most that of the tangential
+            // terms takes away: 6 p r (1 + 2 |p3| r2 + 3 |p4| r4).
+            let most = [p, 2.0 * p * p3.abs(), 3.0 * p * p4.abs()];
+            let parts = [growth, [1.0, k1, k2, k3, k4]];
+            let roots = parts.map(|part| smallest_root_of_parts(&part, &most, looked_to));
+            roots.into_iter().flatten().fold(looked_to, f64::min)
         };
         Self {
             projection,
             radial,
             tangential,
-            fold_squared: fold.unwrap_or(endless),
+            sure,
+            end,
         }
     }
 
@@ -94,7 +105,7 @@ impl Agisoft {
             AgisoftProjection::EquidistantFisheye => outward * theta,
             AgisoftProjection::EquisolidFisheye => outward * (2.0 * (theta / 2.0).sin()),
         };
-        let (distorted, jacobian) = self.map(ideal)?;
+        let (distorted, jacobian) = self.on_branch(ideal)?;
         (jacobian.determinant() > 0.0).then_some(distorted)
     }
 
@@ -107,7 +118,7 @@ impl Agisoft {
         distorted: DVec2,
         tolerance: f64,
     ) -> Result<DVec3, NotInvertible> {
-        let ideal = invert(|ideal| self.map(ideal), distorted, tolerance)?;
+        let ideal = invert(|ideal| self.on_branch(ideal), distorted, tolerance)?;
         let radius = ideal.length();
         let theta = match self.projection {
             AgisoftProjection::Frame => return Ok(ideal.extend(1.0)),
@@ -118,15 +129,23 @@ impl Agisoft {
         Ok((outward * theta.sin()).extend(theta.cos()))
     }
 
-    /// The distorted point and the derivative of the map, or `None` where the radial factor folds or
-    /// the projection ends.
-    fn map(&self, ideal: DVec2) -> Option<(DVec2, DMat2)> {
+    /// The distorted point and the derivative of the map, or `None` where it folds on the way or the projection ends.
+    fn on_branch(&self, ideal: DVec2) -> Option<(DVec2, DMat2)> {
+        let radius = ideal.length();
+        let [p1, p2, ..] = self.tangential;
+        let leads = || {
+            (p1 != 0.0 || p2 != 0.0)
+                && radius < self.end.min(FARTHEST_RADIUS)
+                && leads_outward(|ideal| self.map(ideal).1, self.sure, ideal)
+        };
+        (radius < self.sure || leads()).then(|| self.map(ideal))
+    }
+
+    /// The distorted point and the derivative of the map.
+    fn map(&self, ideal: DVec2) -> (DVec2, DMat2) {
         let ([k1, k2, k3, k4], [p1, p2, p3, p4]) = (self.radial, self.tangential);
         let (x, y) = (ideal.x, ideal.y);
         let s = ideal.length_squared();
-        if s >= self.fold_squared {
-            return None;
-        }
         let radial = 1.0 + s * (k1 + s * (k2 + s * (k3 + s * k4)));
         let radial_ds = k1 + s * (2.0 * k2 + s * (3.0 * k3 + s * 4.0 * k4));
         let decentring = DVec2::new(
@@ -146,10 +165,8 @@ impl Agisoft {
             + ideal * (2.0 * y * radial_ds)
             + decentring_dy * growth
             + decentring * (2.0 * y * growth_ds);
-        Some((
-            ideal * radial + decentring * growth,
-            DMat2::from_cols(dx, dy),
-        ))
+        let jacobian = DMat2::from_cols(dx, dy);
+        (ideal * radial + decentring * growth, jacobian)
     }
 }
 

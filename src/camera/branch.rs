@@ -44,6 +44,23 @@ pub(super) fn invert(
     Ok(ideal)
 }
 
+/// Between two looks for a fold on the way outward the radius grows by this: a fold and its way back within less are not seen.
+const OUTWARD: f64 = 1.01;
+
+/// Whether the map leads outward all the way to `ideal` without folding: it is known not to fold up to the radius `sure`.
+/// `jacobian` is its derivative.
+pub(super) fn leads_outward(jacobian: impl Fn(DVec2) -> DMat2, sure: f64, ideal: DVec2) -> bool {
+    let radius = ideal.length();
+    let mut at = sure.max(1e-6).min(radius);
+    while jacobian(ideal * (at / radius)).determinant() > 0.0 {
+        if at >= radius {
+            return true;
+        }
+        at = (at * OUTWARD).min(radius);
+    }
+    false
+}
+
 /// Newton's method for a target near `map(start)`; `None` where it does not converge at once or
 /// would leave the branch of `start`.
 fn newton(

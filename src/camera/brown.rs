@@ -10,13 +10,13 @@
 
 use glam::{DMat2, DVec2};
 
-use super::branch::invert;
+use super::branch::{invert, leads_outward};
 use super::not_invertible::NotInvertible;
-use super::polynomial::smallest_positive_root;
+use super::polynomial::{smallest_positive_root, smallest_root_of_parts};
 
-/// The squared radius up to which the fold is looked for: tan 89.9 degrees, squared. No lens with
-/// this model sees further out.
-const FARTHEST_SQUARED_RADIUS: f64 = 573.0 * 573.0;
+/// The radius up to which the fold is looked for: tan 89.9 degrees. No lens with this model sees
+/// further out.
+const FARTHEST_RADIUS: f64 = 573.0;
 
 /// OpenCV's rational distortion. Make it with [`Brown::new`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,12 +24,18 @@ pub struct Brown {
     coefficients: [f64; 8],
     /// Squared radius of the fold of the radial factor, infinite where it has none.
     fold_squared: f64,
+    /// Radius within which nothing folds whatever the tangential terms do; that of the fold where there are none.
+    sure: f64,
+    /// Whether there are.
+    is_tangential: bool,
+    /// Radius at which the denominator is zero, or farther than is looked for.
+    pole: f64,
 }
 
 impl Brown {
     /// From `k1 k2 p1 p2 k3 k4 k5 k6`, all finite; missing ones are 0.
     pub fn new(coefficients: [f64; 8]) -> Self {
-        let [k1, k2, _, _, k3, k4, k5, k6] = coefficients;
+        let [k1, k2, p1, p2, k3, k4, k5, k6] = coefficients;
         // d(r N/D)/dr has the sign of N D + 2 s (N' D - N D'), with s = r2; D must stay positive.
         let (numerator, denominator) = ([1.0, k1, k2, k3], [1.0, k4, k5, k6]);
         let mut growth = [0.0; 7];
@@ -40,11 +46,21 @@ impl Brown {
         }
         let fold_squared = [&growth[..], &denominator[..]]
             .into_iter()
-            .filter_map(|p| smallest_positive_root(p, FARTHEST_SQUARED_RADIUS))
+            .filter_map(|p| smallest_positive_root(p, FARTHEST_RADIUS.powi(2)))
             .fold(f64::INFINITY, f64::min);
+        let is_tangential = p1 != 0.0 || p2 != 0.0;
+        let pole = smallest_root_of_parts(&denominator, &[], FARTHEST_RADIUS);
+        let pole = pole.unwrap_or(FARTHEST_RADIUS);
+        let sure = match is_tangential {
+            true => sure_radius(p1.hypot(p2), &growth, numerator, denominator).min(pole),
+            false => fold_squared.sqrt(),
+        };
         Self {
             coefficients,
             fold_squared,
+            sure,
+            is_tangential,
+            pole,
         }
     }
 
@@ -77,10 +93,17 @@ impl Brown {
         invert(|ideal| self.on_branch(ideal), distorted, tolerance)
     }
 
-    /// The distorted point and the derivative of the map, or `None` beyond the fold of the radial
-    /// factor.
+    /// The distorted point and the derivative of the map, or `None` beyond the fold. Tangential terms move that: on one side
+    /// of the middle it lies farther out than the radial factor's, on the other nearer.
     fn on_branch(&self, ideal: DVec2) -> Option<(DVec2, DMat2)> {
-        (ideal.length_squared() < self.fold_squared).then(|| self.map(ideal))
+        let radius = ideal.length();
+        let is_sure = radius < self.sure;
+        let leads = || {
+            self.is_tangential
+                && radius < self.pole
+                && leads_outward(|ideal| self.map(ideal).1, self.sure, ideal)
+        };
+        (is_sure || leads()).then(|| self.map(ideal))
     }
 
     /// The distorted point and the derivative of the map.
@@ -107,6 +130,28 @@ impl Brown {
         ]);
         (distorted, jacobian)
     }
+}
+
+/// The radius within which the map of the plane does not fold.
+///
+/// The derivative is the radial one, symmetric with the eigenvalues N / D and d(r N / D) / dr, and that of the tangential
+/// terms, symmetric with eigenvalues of at most 6 p r: as long as the former are larger, before any pole, nothing folds.
+fn sure_radius(p: f64, growth: &[f64; 7], numerator: [f64; 4], denominator: [f64; 4]) -> f64 {
+    let mut squared = [0.0; 7];
+    for (i, a) in denominator.iter().enumerate() {
+        for (j, b) in denominator.iter().enumerate() {
+            squared[i + j] += 6.0 * p * a * b;
+        }
+    }
+    let roots = [
+        smallest_root_of_parts(
+            &numerator,
+            &denominator.map(|d| 6.0 * p * d),
+            FARTHEST_RADIUS,
+        ),
+        smallest_root_of_parts(growth, &squared, FARTHEST_RADIUS),
+    ];
+    roots.into_iter().flatten().fold(FARTHEST_RADIUS, f64::min)
 }
 
 #[cfg(test)]
@@ -153,6 +198,44 @@ mod tests {
             .ideal_from_distorted(direction * (reach * 1.00001), 1e-13)
             .unwrap_err();
         assert!((outside.fold - reach).abs() < 1e-6, "{outside}");
+    }
+
+    /// Along x, with p2 alone, x' = x + k1 x^3 + 3 p2 x^2: it folds where 1 + 3 k1 x^2 + 6 p2 x = 0, at 1.1229 to the right
+    /// and at -0.9895 to the left for k1 = -0.3 and p2 = 0.02, and the radial factor at 1.0541.
+    #[test]
+    fn tangential_terms_move_the_fold() {
+        let (k1, p2) = (-0.3_f64, 0.02_f64);
+        let model = Brown::new([k1, 0.0, 0.0, p2, 0.0, 0.0, 0.0, 0.0]);
+        let root = (9.0 * p2 * p2 - 3.0 * k1).sqrt();
+        for (side, fold) in [
+            (1.0, (3.0 * p2 + root) / (-3.0 * k1)),
+            (-1.0, (root - 3.0 * p2) / (-3.0 * k1)),
+        ] {
+            let at = |x: f64| DVec2::new(side * x, 0.0);
+            let image = |x: f64| side * x + k1 * side * x.powi(3) + 3.0 * p2 * x * x;
+            for within in [0.3, 0.9, 0.9999] {
+                let x = within * fold;
+                let found = model.distorted_from_ideal(at(x)).unwrap();
+                assert!((found - DVec2::new(image(x), 0.0)).length() < 1e-15);
+                let back = model.ideal_from_distorted(found, 1e-13).unwrap();
+                assert!((back - at(x)).length() < 1e-8, "{back} for {x}");
+            }
+            // Far out both directions are turned back, which mirrors nothing.
+            for beyond in [1.0001, 1.2, 2.0, 50.0] {
+                assert_eq!(model.distorted_from_ideal(at(beyond * fold)), None);
+            }
+            let reach = image(fold);
+            let beyond = DVec2::new(reach * 1.0001, 0.0);
+            let outside = model.ideal_from_distorted(beyond, 1e-13).unwrap_err();
+            assert!((outside.fold - reach.abs()).abs() < 1e-6, "{outside}");
+        }
+        // Without a radial factor: (1 + 6 p2 x)(1 + 2 p2 x) is positive again behind the second fold, where the image is covered twice.
+        let twice = Brown::new([0.0, 0.0, 0.0, -0.5, 0.0, 0.0, 0.0, 0.0]);
+        let seen = |x: f64| twice.distorted_from_ideal(DVec2::new(x, 0.0)).is_some();
+        assert_eq!(
+            [0.3, 0.4, 0.9, 1.1, 3.0].map(seen),
+            [true, false, false, false, false]
+        );
     }
 
     #[test]

@@ -14,6 +14,22 @@ pub(super) fn smallest_positive_root(coefficients: &[f64], limit: f64) -> Option
     roots(coefficients, limit).into_iter().next()
 }
 
+/// The same of even(x^2) - x odd(x^2): where what is left of a lens's growth is no more than its tangential terms can take away.
+pub(super) fn smallest_root_of_parts(even: &[f64], odd: &[f64], limit: f64) -> Option<f64> {
+    let mut coefficients = vec![0.0; 2 * even.len().max(odd.len())];
+    for (power, even) in even.iter().enumerate() {
+        coefficients[2 * power] = *even;
+    }
+    for (power, odd) in odd.iter().enumerate() {
+        coefficients[2 * power + 1] = -odd;
+    }
+    let degree = coefficients.iter().rposition(|c| *c != 0.0);
+    smallest_positive_root(
+        &coefficients[..degree.map_or(0, |degree| degree + 1)],
+        limit,
+    )
+}
+
 /// All sign-changing roots in (0, limit], ascending.
 fn roots(coefficients: &[f64], limit: f64) -> Vec<f64> {
     if coefficients.len() < 2 {
@@ -71,5 +87,12 @@ mod tests {
         assert_eq!(smallest_positive_root(&[-5.0, 1.0], 4.0), None);
         assert_eq!(smallest_positive_root(&[3.0], 4.0), None);
         assert_eq!(smallest_positive_root(&[], 4.0), None);
+        // 6 - x (7 - x^2) = (x - 1)(x - 2)(x + 3)
+        let root = smallest_root_of_parts(&[6.0], &[7.0, -1.0], 10.0).unwrap();
+        assert!((root - 1.0).abs() < 1e-15, "{root}");
+        assert_eq!(
+            smallest_root_of_parts(&[1.0, 0.0, -1.0], &[], 10.0),
+            Some(1.0)
+        );
     }
 }

@@ -59,7 +59,10 @@ impl HealthItem {
             }
             Doubt::UnderSurface | Doubt::FromBehind | Doubt::TurnedMesh => Some(Self::UpAxis),
             Doubt::OtherColours { .. } | Doubt::Flipped { .. } => Some(Self::Colours),
-            Doubt::OtherDistance { .. } | Doubt::OthersElsewhere { .. } => Some(Self::Distance),
+            Doubt::OtherDistance { .. }
+            | Doubt::OthersElsewhere { .. }
+            | Doubt::PartlyThere { .. }
+            | Doubt::MatchesNowhere { .. } => Some(Self::Distance),
             Doubt::StrangeCamera { .. }
             | Doubt::SeveralDevices { .. }
             | Doubt::OtherDevice { .. }
@@ -170,6 +173,8 @@ impl Remedy {
             | Doubt::OtherColours { .. }
             | Doubt::OtherDistance { .. }
             | Doubt::OthersElsewhere { .. }
+            | Doubt::PartlyThere { .. }
+            | Doubt::MatchesNowhere { .. }
             | Doubt::Flipped { .. } => None,
         }
     }

@@ -23,12 +23,18 @@ pub(crate) type Described<'a> = (usize, &'a Photo, PhotoMetadata);
 const LEAST_PLACES: usize = 3;
 /// Receivers of drones are rarely so far off, metres; where the better ones are worse, so many times as far as a quarter of them.
 const ELSEWHERE: f64 = 12.0;
+/// Where all say that they know their place to better than [`SURE`] a drone that moves while its shutter opens is not farther off.
+const ELSEWHERE_OF_SURE: f64 = 3.0;
+/// Metres, along the axis that is worst: RTK, which is fixed.
+const SURE: f64 = 0.3;
 const ELSEWHERE_OF_BETTER: f64 = 8.0;
 
 /// So many positions tell a length: a fit to three leaves two numbers over.
 const LEAST_DISTANT: usize = 4;
 /// The share of a length from which a sentence is due, and how many times its interval it has to be: receivers err together.
 const WORTH_SAYING: f64 = 0.05;
+/// The same of receivers that are sure ([`SURE`]): a map's scale and the height above it are less.
+const WORTH_SAYING_OF_SURE: f64 = 0.01;
 const OF_INTERVAL: f64 = 1.5;
 
 /// Photos whose receivers were elsewhere than their poses.
@@ -55,13 +61,17 @@ pub(crate) fn check_places(flight: &Flight, described: &[Described<'_>]) -> Vec<
     let mut sorted: Vec<f64> = off.iter().map(|(_, off)| *off).collect();
     sorted.sort_unstable_by(f64::total_cmp);
     let better = sorted[(sorted.len() - 1) / 4];
-    if better > ELSEWHERE {
+    let elsewhere = match are_sure(described) {
+        true => ELSEWHERE_OF_SURE,
+        false => ELSEWHERE,
+    };
+    if better > elsewhere {
         let distance = median(&mut sorted).unwrap_or_default();
         let usual = None;
         let all = (0..parts.photos.len()).collect();
         return vec![(Doubt::OtherPlace { distance, usual }, all)];
     }
-    let limit = ELSEWHERE.max(ELSEWHERE_OF_BETTER * better);
+    let limit = elsewhere.max(ELSEWHERE_OF_BETTER * better);
     let fitting = sorted.partition_point(|off| *off <= limit);
     let usual = Some(median(&mut sorted[..fitting]).unwrap_or_default());
     let elsewhere = off.into_iter().filter(|(_, off)| *off > limit);
@@ -99,11 +109,24 @@ pub(crate) fn check_lengths(flight: &Flight, described: &[Described<'_>]) -> Opt
     let found = fit(&pairs).ok()?;
     let ratio = found.similarity.scale.recip();
     let error = found.scale_interval;
-    let limit = WORTH_SAYING.max(OF_INTERVAL * error);
+    let worth_saying = match are_sure(described) {
+        true => WORTH_SAYING_OF_SURE,
+        false => WORTH_SAYING,
+    };
+    let limit = worth_saying.max(OF_INTERVAL * error);
     ((ratio - 1.0).abs() > limit).then(|| {
         let all = (0..parts.photos.len()).collect();
         (Doubt::OtherLength { ratio, error }, all)
     })
+}
+
+/// Whether all that say where they were say it surely.
+fn are_sure(described: &[Described<'_>]) -> bool {
+    let mut places = described
+        .iter()
+        .filter_map(|(_, _, metadata)| metadata.place);
+    let is_sure = |deviation: DVec3| deviation.max_element() <= SURE;
+    places.all(|place| place.deviation.is_some_and(is_sure))
 }
 
 /// Whether the receivers were so near each other that their errors are all that they tell, as on a hover.

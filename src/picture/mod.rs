@@ -37,7 +37,7 @@ pub use image_size::check_size_of;
 pub use isolines::{Isoline, isolines, round_levels};
 pub use mask::{LEFT_OUT, mask_of_regions, paint_regions};
 pub use overlay::overlay;
-pub use parallax::{PairSight, Parallax, Patches, SeenAt, Sighted, SmallPhoto, seen_at};
+pub use parallax::{Look, PairSight, Parallax, Patches, SeenAt, Sighted, SmallPhoto, seen_at};
 pub use pyramid::part::Part;
 pub use pyramid::{PhotoPyramid, TILE, TileKey};
 pub use reduce::{reduced, reduced_size};

@@ -53,11 +53,16 @@ fn near(places: &[Option<DVec3>]) -> Vec<(usize, usize)> {
     for &(photo, place) in &known {
         let mut others: Vec<(f64, usize)> = known
             .iter()
+            .filter(|(other, _)| *other != photo)
             .map(|&(other, at)| (at.distance_squared(place), other))
             .collect();
-        others.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        // The first is itself.
-        let nearest = others.iter().skip(1).take(NEIGHBOURS);
+        // Of a hover, or a receiver that stuck, those that were taken just before and after.
+        let between = |other: usize| (other.abs_diff(photo), other);
+        others.sort_by(|a, b| {
+            let by_place = a.0.total_cmp(&b.0);
+            by_place.then_with(|| between(a.1).cmp(&between(b.1)))
+        });
+        let nearest = others.iter().take(NEIGHBOURS);
         pairs.extend(nearest.map(|&(_, other)| (photo, other)));
     }
     pairs
@@ -111,6 +116,17 @@ mod tests {
             left_out: Vec::new(),
             origin: DVec3::ZERO,
             count: places.len(),
+        }
+    }
+
+    /// Of a hover each is compared with those that were taken around it.
+    #[test]
+    fn photos_of_one_place_are_compared_in_their_order() {
+        let pairs = near(&[Some(DVec3::new(3.0, 4.0, 5.0)); 60]);
+        assert_eq!(pairs.len(), 60 * NEIGHBOURS);
+        assert!(pairs.iter().all(|(a, b)| a != b));
+        for photo in 0..59 {
+            assert!(pairs.contains(&(photo, photo + 1)) && pairs.contains(&(photo + 1, photo)));
         }
     }
 

@@ -36,6 +36,11 @@ pub(super) struct Mesh {
     rays: AtomicU32,
 }
 
+/// Whether a triangle has three different corners. One without has no inside; its neighbours cover its edge.
+pub(super) fn has_inside(&[a, b, c]: &[u32; 3]) -> bool {
+    a != b && b != c && c != a
+}
+
 impl Mesh {
     /// Takes points and triangles. Indices are below the number of points.
     ///
@@ -46,8 +51,7 @@ impl Mesh {
         colors: Vec<[u8; 3]>,
         mut triangles: Vec<[u32; 3]>,
     ) -> Result<Self, SurfaceError> {
-        // A triangle with a repeated corner has no inside; its neighbours cover its edge.
-        triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
+        triangles.retain(has_inside);
         if triangles.is_empty() {
             return Err(SurfaceError::NoTriangles);
         }

@@ -5,12 +5,13 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
+use super::mesh::has_inside;
 use crate::geometry::Bounds;
 
 /// Steps of the curve along each axis, as a power of two: three of them fill 63 bits.
 const BITS: u32 = 21;
 
-/// The same faces with one index for each place, along a Z-order curve through their middles (Morton, "A computer oriented
+/// The same faces with one index for each place, without those that lose a corner by it, along a Z-order curve through their middles (Morton, "A computer oriented
 /// geodetic data base", 1966).
 pub(super) fn welded_neighbours(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let mut first_at: FxHashMap<[u64; 3], u32> = FxHashMap::default();
@@ -43,6 +44,7 @@ pub(super) fn welded_neighbours(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec
     };
     let mut ordered: Vec<(u64, [u32; 3])> = faces
         .par_iter()
+        .filter(|face| has_inside(face))
         .map(|face| (along_curve(face), *face))
         .collect();
     // The faces tell ties apart, so the same file gives the same order on every run.
@@ -91,5 +93,10 @@ mod tests {
         assert_eq!((welded.len(), used.len()), (4, 5), "{welded:?}");
         let turned: Vec<[u32; 3]> = triangles.iter().rev().copied().collect();
         assert_eq!(welded_neighbours(&points, &turned).len(), 4);
+        // A sliver with two corners at one place.
+        let (mut points, mut triangles) = (points, triangles);
+        points.extend([tip, tip, base[0]]);
+        triangles.push([12, 13, 14]);
+        assert_eq!(welded_neighbours(&points, &triangles), welded);
     }
 }

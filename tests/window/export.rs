@@ -117,6 +117,12 @@ fn the_chosen_photos_are_exported_as_the_command_exports_them() {
             );
         }
     }
+    // Who finds it is told that the flight's file is not what was exported.
+    let told = |folder: &Path| {
+        let html = fs::read_to_string(folder.join("scales.html")).expect("scales.html");
+        html.contains("changes that were not saved")
+    };
+    assert_eq!([told(&ours), told(&theirs)], [true, false]);
     let html = fs::read_to_string(ours.join("scales.html")).expect("scales.html");
     assert!(html.contains("IMG_0002.jpg") && !html.contains("photos/IMG_0004.jpg"));
 }

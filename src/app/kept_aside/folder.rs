@@ -10,6 +10,8 @@ use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
+use crate::files::{self, Inputs, Kind};
+
 /// Whose changes lie in a folder; written after all else.
 const WHOSE: &str = "kept_aside.json";
 /// What is held while a window runs.
@@ -53,7 +55,10 @@ impl KeptFolder {
         let name = format!("{}-{}", since.as_millis(), std::process::id());
         let path = root.join(name);
         fs::create_dir(&path)?;
-        let lock = File::create(path.join(LOCK))?;
+        let lock = path.join(LOCK);
+        files::write(&lock, b"", Kind::Result, &Inputs::default(), false)
+            .map_err(io::Error::other)?;
+        let lock = File::options().write(true).open(lock)?;
         lock.try_lock().map_err(io::Error::from)?;
         Ok(Self { path, _lock: lock })
     }

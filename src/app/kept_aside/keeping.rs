@@ -3,12 +3,11 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::KeptOf;
 use super::folder::KeptFolder;
+use super::{Kept, KeptOf};
 use crate::exports;
 use crate::fault::Fault;
 use crate::files::{self, FileError, Inputs, Kind};
-use crate::flight::FlightSettings;
 use crate::jobs::Progress;
 use crate::open_flight::OpenFlight;
 use crate::opening::{control_file, outline_files};
@@ -18,16 +17,6 @@ use crate::tasks::Task;
 impl Task {
     /// Keeping aside what is not saved.
     pub const KEEP_ASIDE: Self = Self::new("Keeping changes aside").to_the_end();
-}
-
-/// What of a flight is kept: another one of these is other changes.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Kept {
-    /// Which flight on the screen.
-    flight: u64,
-    settings: FlightSettings,
-    /// Photos whose outlines are on the screen, with their revisions.
-    outlines: Vec<(usize, u64)>,
 }
 
 impl Kept {

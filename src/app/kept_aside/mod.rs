@@ -1,14 +1,16 @@
 //! Changes that are not saved are kept aside: a machine that loses its power takes half a minute's corrections along, and not an hour's.
 //!
 //! ```text
-//! folder   where they lie, and whether their window is gone
-//! keeping  writes them, as a job, half a minute after a change
+//! folder    where they lie, and whether their window is gone
+//! applying  when they are kept, when they go, and what she does with what was left behind
+//! keeping   writes them, as a job
 //! ```
 //!
 //! They lie where the preferences are, in a folder `unsaved`: a flight.toml with what saving writes beside it. Saved or
-//! discarded, they go. What a window left behind that ended badly is offered by the next one (`panels/kept_aside.rs`): opened it is a
+//! discarded, they go. What a window left behind that ended badly is offered by the next one (`panels/strips/kept_aside.rs`): opened it is a
 //! flight with changes, which is saved where it was.
 
+mod applying;
 mod folder;
 mod keeping;
 
@@ -20,10 +22,7 @@ use chrono::{DateTime, Local};
 
 use self::folder::KeptFolder;
 pub use self::folder::KeptOf;
-use self::keeping::Kept;
-use crate::files;
-use crate::open_flight::OpenFlight;
-use crate::state::{Leaving, Named, State};
+use crate::flight::FlightSettings;
 
 /// After a change it is kept aside so much later, with all that came meanwhile.
 const AFTER: Duration = Duration::from_secs(30);
@@ -47,6 +46,16 @@ pub struct KeptAside {
     due: Option<Instant>,
     /// Whether it was said that it cannot be.
     has_failed: bool,
+}
+
+/// What of a flight is kept: another one of these is other changes.
+#[derive(Debug, Clone, PartialEq)]
+struct Kept {
+    /// Which flight on the screen.
+    flight: u64,
+    settings: FlightSettings,
+    /// Photos whose outlines are on the screen, with their revisions.
+    outlines: Vec<(usize, u64)>,
 }
 
 /// Changes that another window left behind.
@@ -134,71 +143,5 @@ impl KeptAside {
         for left in self.left.drain(..).filter(|left| left.is_open) {
             left.folder.remove();
         }
-    }
-}
-
-impl State {
-    pub(crate) fn kept_step(&mut self, step: KeptStep) {
-        match step {
-            KeptStep::Open(place) => {
-                if let Some(left) = self.kept_aside.left.get(place) {
-                    let paths = vec![left.folder.flight_file()];
-                    let named = Named::Alone;
-                    self.leave(Leaving::Read { paths, named });
-                }
-            }
-            KeptStep::PutOff(place) => {
-                if let Some(left) = self.kept_aside.left.get_mut(place) {
-                    left.is_put_off = true;
-                }
-            }
-        }
-    }
-
-    /// What was left behind goes once it was opened, and saved or discarded.
-    fn let_go_of_left(&mut self) {
-        let shown = self
-            .open
-            .as_deref()
-            .filter(|open| open.files.kept.is_some());
-        let shown = shown.and_then(|open| open.files.origin.flight_file());
-        let is_opening = self.is_opening();
-        let mut place = 0;
-        while let Some(left) = self.kept_aside.left.get_mut(place) {
-            let file = left.folder.flight_file();
-            if shown.is_some_and(|shown| files::is_same_file(shown, &file)) {
-                left.is_open = true;
-            } else if left.is_open && !is_opening {
-                self.kept_aside.left.remove(place).folder.remove();
-                continue;
-            }
-            place += 1;
-        }
-    }
-
-    /// Keeps aside what is not saved, some time after the last change was kept; and lets go of what is saved. In each frame.
-    pub(crate) fn keep_aside(&mut self) {
-        if self.kept_aside.root.is_none() || self.is_keeping() {
-            return;
-        }
-        self.let_go_of_left();
-        if !self.open.as_deref().is_some_and(OpenFlight::is_changed) {
-            self.kept_aside.forget();
-            return;
-        }
-        if !self.kept_aside.is_touched {
-            return;
-        }
-        let now = Instant::now();
-        let due = now + self.kept_aside.after;
-        let due = *self.kept_aside.due.get_or_insert(due);
-        if now < due {
-            // An idle window draws no other frame for it.
-            self.context.request_repaint_after(due - now);
-            return;
-        }
-        self.kept_aside.is_touched = false;
-        self.kept_aside.due = None;
-        self.start_keeping();
     }
 }

@@ -55,6 +55,13 @@ impl State {
         let mut warnings = open.all_warnings();
         let read_as = open.files.read_as.clone();
         let source = open.files.origin.file().to_owned();
+        // For who finds the export later, and that file beside it: she knows.
+        warnings.extend(open.is_changed().then(|| {
+            format!(
+                "{}: the export is of the flight as it was in the window, with changes that were not saved in this file",
+                source.display()
+            )
+        }));
         let work = move |progress: &Progress| {
             let begun = Instant::now();
             let changed = read_as.all_changed();

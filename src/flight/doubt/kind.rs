@@ -4,7 +4,7 @@
 use super::Doubt;
 
 /// All words.
-const KINDS: [&str; 45] = [
+const KINDS: [&str; 47] = [
     "no-scale",
     "off-surface",
     "no-point",
@@ -48,6 +48,8 @@ const KINDS: [&str; 45] = [
     "laser-range",
     "other-colours",
     "other-distance",
+    "partly-there",
+    "matches-nowhere",
     "others-elsewhere",
     "flipped",
 ];
@@ -111,6 +113,8 @@ impl Doubt {
             Self::LaserRange { .. } => "laser-range",
             Self::OtherColours { .. } => "other-colours",
             Self::OtherDistance { .. } => "other-distance",
+            Self::PartlyThere { .. } => "partly-there",
+            Self::MatchesNowhere { .. } => "matches-nowhere",
             Self::OthersElsewhere { .. } => "others-elsewhere",
             Self::Flipped { .. } => "flipped",
         }

@@ -283,6 +283,18 @@ pub enum Doubt {
         /// Their mean correlation where the surface is.
         here: f64,
     },
+    /// The photo and one beside it see the surface in its place only in a part of what both show.
+    PartlyThere {
+        /// The name of the photo beside it.
+        other: String,
+        /// In this share.
+        share: f64,
+    },
+    /// The photo is like those beside it at no distance of the surface.
+    MatchesNowhere {
+        /// The name of one of them.
+        other: String,
+    },
     /// Whether it sees the surface in its place it does not tell; photos of the flight that do see it elsewhere, all of them.
     OthersElsewhere {
         /// So many.
@@ -337,6 +349,10 @@ impl Doubt {
 
     /// Whether what the photo shows says it: its colours, or its stones.
     pub fn is_of_pixels(&self) -> bool {
-        self.is_of_colours() || matches!(self, Self::OtherDistance { .. })
+        self.is_of_colours()
+            || matches!(
+                self,
+                Self::OtherDistance { .. } | Self::PartlyThere { .. } | Self::MatchesNowhere { .. }
+            )
     }
 }

@@ -318,6 +318,15 @@ impl fmt::Display for Doubt {
                     "it and {other} see the surface {place} than it is (their pictures match there with r = {there:.2}, on the surface with {here:.2}), and its scale is too {wrong} by about as much: look whether surface, poses, heights and focal length are of one flight and one day"
                 )
             }
+            Self::PartlyThere { other, share } => write!(
+                f,
+                "it and {other} see the surface where it is in {:.0} % of what both show, and the rest elsewhere or not at all: look whether the surface is of the same day as the photos, and whole",
+                share * 100.0
+            ),
+            Self::MatchesNowhere { other } => write!(
+                f,
+                "by their poses it and {other} show the same rock, and their pictures are alike at no distance of it: look whether it is this photo (renamed, turned, of another flight) and its pose; leaves and water do so, too"
+            ),
             Self::OthersElsewhere { photos, factor } => {
                 let (place, wrong) = farther(*factor);
                 let who = match photos {

@@ -76,10 +76,11 @@ impl Doubt {
             | Self::TurnedMesh
             | Self::OtherDistance { .. }
             | Self::OthersElsewhere { .. }
+            | Self::PartlyThere { .. }
             | Self::OtherHeights { .. }
             | Self::FlyingHeight { .. }
             | Self::LaserRange { .. } => (OnPhoto::Nothing, InView::FromSide),
-            Self::OtherColours { .. } | Self::Flipped { .. } => {
+            Self::OtherColours { .. } | Self::Flipped { .. } | Self::MatchesNowhere { .. } => {
                 (OnPhoto::Nothing, InView::ThroughCamera)
             }
             Self::NoScale(_)

@@ -51,6 +51,19 @@ impl Together {
                 there: *there,
                 here: *here,
             }),
+            Self::Pair {
+                other,
+                sight: PairSight::Nowhere,
+            } => Some(Doubt::MatchesNowhere {
+                other: other.clone(),
+            }),
+            Self::Pair {
+                other,
+                sight: PairSight::Partly(share),
+            } => Some(Doubt::PartlyThere {
+                other: other.clone(),
+                share: *share,
+            }),
             Self::Pair { .. } => None,
             &Self::OthersElsewhere { photos, factor } => {
                 Some(Doubt::OthersElsewhere { photos, factor })
@@ -79,6 +92,11 @@ impl Together {
                 "with {other} it sees the surface at {:.1} % of its distance",
                 seen.factor * 100.0
             ),
+            PairSight::Partly(share) => format!(
+                "with {other} it sees the surface where it is in {:.0} % of what both show",
+                share * 100.0
+            ),
+            PairSight::Nowhere => format!("it is like {other} at no distance of the surface"),
             PairSight::Unclear => format!("with {other} it does not tell where the surface is"),
         }
     }
@@ -211,7 +229,8 @@ impl PhotosTogether {
                 });
             said_by(&its.collect::<Vec<_>>())
         };
-        let said: Vec<_> = (0..photos.len()).map(of_photo).collect();
+        let mut said: Vec<_> = (0..photos.len()).map(of_photo).collect();
+        doubt_strangers(said.iter_mut().flatten().map(|(_, sight)| sight));
         let elsewhere = all_elsewhere(said.iter().flatten().map(|(_, sight)| sight));
         let all = said.into_iter().enumerate();
         let together = all.filter_map(|(photo, said)| {
@@ -237,21 +256,36 @@ fn all_elsewhere<'a>(sights: impl Iterator<Item = &'a PairSight>) -> Option<(usi
     let mut factors = Vec::new();
     for sight in sights {
         match sight {
-            PairSight::There(_) => return None,
+            PairSight::There(_) | PairSight::Partly(_) => return None,
             PairSight::Elsewhere(seen) => factors.push(seen.factor),
-            PairSight::Unclear => {}
+            PairSight::Nowhere | PairSight::Unclear => {}
         }
     }
     Some((factors.len(), median(&mut factors)?))
 }
 
+/// Two photos that are alike at no distance may be of other light, or of leaves and water. They speak against themselves where others of
+/// their flight tell, or where there are more such photos.
+fn doubt_strangers<'a>(sights: impl Iterator<Item = &'a mut PairSight>) {
+    let all: Vec<&mut PairSight> = sights.collect();
+    let count = |is: fn(&PairSight) -> bool| all.iter().filter(|sight| is(sight)).count();
+    let strangers = count(|sight| matches!(sight, PairSight::Nowhere));
+    let telling = count(|sight| !matches!(sight, PairSight::Nowhere | PairSight::Unclear));
+    if telling == 0 && strangers < 3 {
+        let strangers = all.into_iter();
+        let strangers = strangers.filter(|sight| matches!(sight, PairSight::Nowhere));
+        strangers.for_each(|sight| *sight = PairSight::Unclear);
+    }
+}
+
 /// What the pairs of a photo say of it, each with the other photo. One of two pairs may be wrong by the other photo's error: the surface is
-/// elsewhere if more of them see it elsewhere than where it is.
+/// elsewhere if more of them see it elsewhere, or not in all, than where it is.
 fn said_by(pairs: &[(usize, PairSight)]) -> Option<(usize, PairSight)> {
     let tells = |sight: &PairSight| match sight {
         PairSight::There(off) => -off,
+        PairSight::Partly(share) => -share,
         PairSight::Elsewhere(seen) => seen.there,
-        PairSight::Unclear => 0.0,
+        PairSight::Nowhere | PairSight::Unclear => 0.0,
     };
     let best = |wanted: fn(&PairSight) -> bool| {
         let wanted = pairs.iter().filter(|(_, sight)| wanted(sight));
@@ -262,11 +296,13 @@ fn said_by(pairs: &[(usize, PairSight)]) -> Option<(usize, PairSight)> {
     };
     let (there, of_there) = best(|sight| matches!(sight, PairSight::There(_)));
     let (elsewhere, of_elsewhere) = best(|sight| matches!(sight, PairSight::Elsewhere(_)));
-    let said = match of_elsewhere > of_there {
-        true => elsewhere,
+    let (partly, of_partly) = best(|sight| matches!(sight, PairSight::Partly(_)));
+    let said = match of_elsewhere + of_partly > of_there {
+        true => elsewhere.or(partly),
         false => there,
     };
-    said.or(pairs.first()).copied()
+    let (stranger, _) = best(|sight| matches!(sight, PairSight::Nowhere));
+    said.or(stranger).or(pairs.first()).copied()
 }
 
 fn sighted<'a>(flight: &'a Flight, photo: usize, small: &'a SmallPhoto) -> Sighted<'a> {
@@ -288,6 +324,7 @@ mod tests {
             there,
             here: 0.0,
             is_elsewhere: true,
+            share: 1.0,
         })
     }
 
@@ -307,10 +344,39 @@ mod tests {
             ),
             (vec![(1, PairSight::There(0.004)), (2, there)], (2, there)),
             (vec![(4, PairSight::Unclear)], (4, PairSight::Unclear)),
+            (
+                vec![(1, PairSight::Partly(0.5)), (2, PairSight::Partly(0.4))],
+                (2, PairSight::Partly(0.4)),
+            ),
+            (vec![(1, PairSight::Partly(0.5)), (2, there)], (2, there)),
+            (
+                vec![(4, PairSight::Unclear), (5, PairSight::Nowhere)],
+                (5, PairSight::Nowhere),
+            ),
+            (vec![(5, PairSight::Nowhere), (6, there)], (6, there)),
         ] {
             assert_eq!(said_by(&pairs), Some(wanted), "{pairs:?}");
         }
         assert_eq!(said_by(&[]), None);
+    }
+
+    /// One pair alone may be of two lights; beside others that tell, or several of them, it is of other photos.
+    #[test]
+    fn photos_that_are_like_none_beside_them_are_doubted() {
+        let there = PairSight::There(0.001);
+        let (stranger, unclear) = (PairSight::Nowhere, PairSight::Unclear);
+        for (sights, wanted) in [
+            (vec![stranger, stranger], vec![unclear, unclear]),
+            (vec![stranger, there], vec![stranger, there]),
+            (
+                vec![stranger, unclear, stranger, stranger],
+                vec![stranger, unclear, stranger, stranger],
+            ),
+        ] {
+            let mut found = sights.clone();
+            doubt_strangers(found.iter_mut());
+            assert_eq!(found, wanted, "{sights:?}");
+        }
     }
 
     /// A photo that does not tell is no surer than those of its flight that do.

@@ -22,6 +22,20 @@ fn centers() -> Vec<DVec3> {
 
 /// The flight with these poses, in a world that `world` describes; its photos' receivers were at `places` in UTM.
 fn flight(folder: &Path, world: &str, poses: &[DVec3], places: &[DVec3]) -> Opened {
+    flight_by(folder, world, poses, places, "")
+}
+
+/// What a receiver says that has fixed its place.
+const RTK: &str = r#"drone-dji:RtkFlag="50" drone-dji:RtkStdLon="0.012" drone-dji:RtkStdLat="0.011" drone-dji:RtkStdHgt="0.025" "#;
+
+/// The same by a receiver that says this of itself.
+fn flight_by(
+    folder: &Path,
+    world: &str,
+    poses: &[DVec3],
+    places: &[DVec3],
+    receiver: &str,
+) -> Opened {
     let crs = Crs::understand("EPSG:32632").unwrap();
     fs::create_dir_all(folder.join("photos")).unwrap();
     let mut text = "photo,x,y,z,omega,phi,kappa\n".to_owned();
@@ -29,7 +43,7 @@ fn flight(folder: &Path, world: &str, poses: &[DVec3], places: &[DVec3]) -> Open
         writeln!(text, "{index}.jpg,{},{},{},0,0,0", pose.x, pose.y, pose.z).unwrap();
         let at = crs.to_geographic(*place).unwrap();
         let xmp = format!(
-            r#"<rdf:Description drone-dji:GpsLatitude="{:+.9}" drone-dji:GpsLongitude="{:+.9}" drone-dji:AbsoluteAltitude="{:+.3}"/>"#,
+            r#"<rdf:Description {receiver}drone-dji:GpsLatitude="{:+.9}" drone-dji:GpsLongitude="{:+.9}" drone-dji:AbsoluteAltitude="{:+.3}"/>"#,
             at.latitude, at.longitude, at.height
         );
         let photo = jpeg((400, 300), &[], &[&packet(&xmp)]);
@@ -126,4 +140,38 @@ fn names_that_were_all_exchanged() {
         .iter()
         .filter(|said| said.contains("taken elsewhere than their poses stand"));
     assert_eq!(about.count(), 1, "{said:?}");
+}
+
+/// A receiver that knows its place to two centimetres tells a length to better than a hundredth, and two photos 9 m apart.
+#[test]
+fn sure_receivers_tell_more() {
+    let folder = tempfile::tempdir().unwrap();
+    let world = "unit = \"m\"\ncrs = \"EPSG:32632\"";
+    let places: Vec<DVec3> = (centers().into_iter())
+        .map(|place| centers()[0] + (place - centers()[0]) * 0.3)
+        .collect();
+    let of =
+        |poses: &[DVec3], receiver: &str| flight_by(folder.path(), world, poses, &places, receiver);
+    let longer = |factor: f64| -> Vec<DVec3> {
+        let from = |place: &DVec3| places[0] + (*place - places[0]) * factor;
+        places.iter().map(from).collect()
+    };
+    let has = |opened: &Opened, kind: &str| {
+        reasons(opened, kind)
+            .iter()
+            .map(Option::is_some)
+            .collect::<Vec<_>>()
+    };
+    let swapped: Vec<DVec3> = [1, 0, 2, 3, 4, 5].map(|index| places[index]).to_vec();
+    for (receiver, is_told) in [(RTK, true), ("", false)] {
+        let right = of(&longer(1.005), receiver);
+        assert_eq!(has(&right, "other-length"), [false; 6]);
+        assert_eq!(has(&right, "other-place"), [false; 6]);
+        assert_eq!(
+            has(&of(&longer(1.03), receiver), "other-length"),
+            [is_told; 6]
+        );
+        let swapped = has(&of(&swapped, receiver), "other-place");
+        assert_eq!(swapped, [is_told, is_told, false, false, false, false]);
+    }
 }

@@ -1,6 +1,6 @@
 //! How well patches match in another photo, by the factor of their distance.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::patches::{PIXELS, Patch, Patches, normalised};
 use super::small_photo::shrunk;
@@ -33,6 +33,37 @@ const ITS_OWN: f64 = 3.0;
 /// What is seen where the surface is lies within so many pixels of it.
 const THERE: f64 = 1.5;
 
+/// Another photo that shows fewer of the patches, or a smaller share of them, may match none by chance.
+const MANY: usize = 100;
+const MUCH: f64 = 0.2;
+
+/// What both photos show is looked at in so many parts along each side, where patches match or do not.
+const PARTS: usize = 4;
+
+/// A part with fewer patches says nothing.
+const FEWEST_OF_PART: usize = 15;
+
+/// Of fewer parts nothing is said.
+const FEWEST_PARTS: f64 = 4.0;
+
+/// A part matches where its mean correlation stands out by so much, and by so many deviations, of what wrong factors give.
+const PART_MATCH: f64 = 0.04;
+const PART_CLEAR: f64 = 3.0;
+
+/// These wrong factors move patches by so many pixels of the small photo.
+const WRONG: [f64; 8] = [-14.0, -11.0, -8.0, -5.0, 5.0, 8.0, 11.0, 14.0];
+
+/// What patches of a photo say in another one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Look {
+    /// There they match.
+    At(SeenAt),
+    /// By its pose the other photo shows many of them, and it looks like them at no distance.
+    Nowhere,
+    /// They do not tell: hardly any parallax, few that the other shows, or they match at no distance clearly.
+    Unclear,
+}
+
 /// Where another photo sees the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeenAt {
@@ -44,6 +75,8 @@ pub struct SeenAt {
     pub here: f64,
     /// Whether that is another place than the surface's, by more than the pixels can be wrong.
     pub is_elsewhere: bool,
+    /// The share of the parts of what both photos show that match there, of those that can be told; 1 where few can.
+    pub share: f64,
 }
 
 /// How a photo sees points of the surface that lie on the rays of another one.
@@ -99,25 +132,35 @@ impl Match {
     }
 }
 
-/// Where the other photo sees the surface on which the patches lie; `None` where it does not tell.
-pub fn seen_at(patches: &Patches, other: &Sighted<'_>) -> Option<SeenAt> {
+/// Where the other photo sees the surface on which the patches lie.
+pub fn seen_at(patches: &Patches, other: &Sighted<'_>) -> Look {
     let middles: Vec<DVec3> = patches
         .patches
         .iter()
         .map(|patch| patch.points[PIXELS / 2])
         .collect();
-    let parallax = Parallax::of(&middles, patches.eye, other.camera, other.pose)?;
-    if !parallax.tells() {
-        return None;
-    }
+    let parallax = Parallax::of(&middles, patches.eye, other.camera, other.pose);
+    let Some(parallax) = parallax.filter(Parallax::tells) else {
+        return Look::Unclear;
+    };
     let sweep = |every: usize| Sweep::new(patches, other, parallax.pixels_a_percent, every);
     // Nearly always the surface is where it is seen, and stands out so far that a look at some patches and factors tells.
     let quick = sweep(QUICK.into()).seen(
         |at| at.abs() <= 3 || at % i32::from(QUICK) == 0,
         2.0 * CLEAR,
     );
-    let quick = quick.filter(|seen| !seen.is_elsewhere);
-    quick.or_else(|| sweep(1).seen(|_| true, CLEAR))
+    let all = sweep(1);
+    let look = match quick {
+        Look::At(seen) if !seen.is_elsewhere => quick,
+        _ => all.seen(|_| true, CLEAR),
+    };
+    match look {
+        Look::At(seen) => Look::At(SeenAt {
+            share: all.share_of_parts(&seen),
+            ..seen
+        }),
+        other => other,
+    }
 }
 
 /// For a quick look one of so many patches and of so many factors.
@@ -158,7 +201,12 @@ impl<'a> Sweep<'a> {
     }
 
     /// What is seen where of the steps that are `looked_at`, counted from the surface, if it stands out by so many deviations.
-    fn seen(&self, looked_at: impl Fn(i32) -> bool, clear: f64) -> Option<SeenAt> {
+    fn seen(&self, looked_at: impl Fn(i32) -> bool, clear: f64) -> Look {
+        self.best(looked_at, clear).unwrap_or(Look::Unclear)
+    }
+
+    /// The same; `None` where the other photo shows too few of the patches.
+    fn best(&self, looked_at: impl Fn(i32) -> bool, clear: f64) -> Option<Look> {
         let step = self.of_pixels(STEP).min(0.01);
         let most = (FARTHEST / step) as i32;
         let steps = (-most..=most).filter(|at| looked_at(*at));
@@ -178,19 +226,82 @@ impl<'a> Sweep<'a> {
         // Of a normal distribution the median deviation is 0.6745 of the standard one.
         let deviation = deviation / 0.6745;
         if best.mean < LEAST_MATCH || best.weight() - usual < clear * deviation {
-            return None;
+            let shown = here.patches as f64 / self.patches.len() as f64;
+            let is_told = here.patches >= MANY && shown >= MUCH;
+            return Some(match best.mean < LEAST_MATCH && is_told {
+                true => Look::Nowhere,
+                false => Look::Unclear,
+            });
         }
         let moved = top_of(&all, place);
         let is_elsewhere = moved.abs() > self.of_pixels(THERE).max(WORTH_SAYING);
         if is_elsewhere && best.weight() - here.weight() <= clear * deviation {
             return None;
         }
-        Some(SeenAt {
+        Some(Look::At(SeenAt {
             factor: moved.exp(),
             there: best.mean,
             here: here.mean,
             is_elsewhere,
-        })
+            share: 1.0,
+        }))
+    }
+
+    /// See [`SeenAt::share`]. A part is told where what the whole gives would stand out in it twice as far as it must.
+    fn share_of_parts(&self, seen: &SeenAt) -> f64 {
+        let moved = seen.factor.ln();
+        let right = self.by_part(moved);
+        let wrong = WRONG.map(|pixels| self.by_part(moved + self.of_pixels(pixels)));
+        let (mut told, mut matching) = (0.0, 0.0);
+        for (part, right) in right.iter().enumerate() {
+            let of_wrong: Vec<f64> = wrong.iter().filter_map(|wrong| wrong[part]).collect();
+            let Some(right) = right.filter(|_| of_wrong.len() * 2 > WRONG.len()) else {
+                continue;
+            };
+            let count = of_wrong.len() as f64;
+            let usual = of_wrong.iter().sum::<f64>() / count;
+            let squares: f64 = of_wrong.iter().map(|wrong| (wrong - usual).powi(2)).sum();
+            let deviation = (squares / (count - 1.0)).sqrt();
+            let least = PART_MATCH.max(PART_CLEAR * deviation);
+            if seen.there > 2.0 * least {
+                told += 1.0;
+                matching += f64::from(u8::from(right - usual > least));
+            }
+        }
+        match told < FEWEST_PARTS {
+            true => 1.0,
+            false => matching / told,
+        }
+    }
+
+    /// The mean correlation of the patches in each part of what the other photo shows of them.
+    fn by_part(&self, moved: f64) -> [Option<f64>; PARTS * PARTS] {
+        let factor = moved.exp();
+        let each = self.patches.iter().filter_map(|(patch, rays)| {
+            // The part is of where it lies on the surface, whatever the factor.
+            let [a, b] = rays[PIXELS / 2];
+            let at = a + b;
+            let pixel = (at.z > 0.0).then(|| (at / at.z).truncate())?;
+            Some((pixel, correlation(patch, rays, self.other, factor)?))
+        });
+        let each: Vec<(DVec2, f64)> = each.collect();
+        let min = each
+            .iter()
+            .fold(DVec2::INFINITY, |min, (at, _)| min.min(*at));
+        let max = each
+            .iter()
+            .fold(DVec2::NEG_INFINITY, |max, (at, _)| max.max(*at));
+        let side = (max - min).max(DVec2::splat(f64::MIN_POSITIVE)) / PARTS as f64;
+        let mut parts = [(0.0, 0_usize); PARTS * PARTS];
+        for (at, correlation) in each {
+            let [column, row] = ((at - min) / side)
+                .to_array()
+                .map(|at| (at as usize).min(PARTS - 1));
+            let (sum, count) = &mut parts[row * PARTS + column];
+            *sum += correlation;
+            *count += 1;
+        }
+        parts.map(|(sum, count)| (count >= FEWEST_OF_PART).then(|| sum / count as f64))
     }
 
     /// The mean correlation of the patches that the other photo shows whole.

@@ -105,7 +105,7 @@ fn patches(surface: &Surface, sighted: &Sighted<'_>) -> Patches {
 }
 
 /// What the two see of a surface, their cameras being taken for others.
-fn sight(surface: &Surface, photos: &[RgbImage; 2], camera: &Camera) -> [Option<SeenAt>; 2] {
+fn sight(surface: &Surface, photos: &[RgbImage; 2], camera: &Camera) -> [Look; 2] {
     let poses = poses();
     let small = photos.each_ref().map(|photo| small(photo, camera));
     let sighted = [0, 1].map(|at| Sighted {
@@ -150,12 +150,60 @@ fn a_right_surface_is_seen_where_it_is() {
         panic!("{first:?} {second:?}");
     };
     assert!(off < 0.002, "{off}");
-    assert!(first.is_some_and(|seen| seen.here > 0.8), "{first:?}");
+    assert!(
+        matches!(first, Look::At(seen) if seen.here > 0.8 && seen.share == 1.0),
+        "{first:?}"
+    );
     // A centimetre in ten metres is not worth a word.
     let [first, second] = sight(&floor(0.1), &photos, &camera());
     assert!(
         matches!(PairSight::of(first, second), PairSight::There(off) if (off - 0.01).abs() < 0.003)
     );
+}
+
+/// Of the floor a part was dug away since, to another depth everywhere: what is left is where it was, the rest is somewhere else.
+#[test]
+fn a_surface_that_is_right_in_a_part_confirms_nothing() {
+    let photos = poses().each_ref().map(photo);
+    let side = 180_i32;
+    let dug = |from: f64| {
+        let points = (0..side * side).map(|at| {
+            let place = |k: i32| (f64::from(k) + 0.5) / f64::from(side) * 2.0 * HALF - HALF;
+            let (x, y) = (place(at % side), place(at / side));
+            let up = if x > from { 2.0 + 0.3 * y } else { 0.0 };
+            DVec3::new(x, y, height(x, y) + up)
+        });
+        let surface = Surface::new(Cloud {
+            points: points.collect(),
+            ..Cloud::default()
+        });
+        let [first, second] = sight(&surface.unwrap(), &photos, &camera());
+        PairSight::of(first, second)
+    };
+    let three_quarters = dug(-2.3);
+    assert!(
+        !matches!(three_quarters, PairSight::There(_)),
+        "{three_quarters:?}"
+    );
+    assert!(matches!(dug(3.5), PairSight::There(_)));
+}
+
+/// The photo that sees less of it counts.
+#[test]
+fn how_much_matches_decides() {
+    let at = |share: f64| {
+        Look::At(SeenAt {
+            factor: 1.001,
+            there: 0.5,
+            here: 0.5,
+            is_elsewhere: false,
+            share,
+        })
+    };
+    let of = |first: f64, second: f64| PairSight::of(at(first), at(second));
+    assert!(matches!(of(0.6, 1.0), PairSight::There(_)));
+    assert_eq!(of(1.0, 0.5), PairSight::Unclear);
+    assert_eq!(of(0.25, 0.9), PairSight::Partly(0.25));
 }
 
 /// Looked at through a longer lens than it was taken with, the same parallax is that of rock farther away.
@@ -175,7 +223,8 @@ fn other_photos_tell_nothing() {
     // Of another place.
     let away = Pose::from_tilt_pan(DVec3::new(103.0, 50.0, 10.0), [90.0, 0.0]);
     let [a, b] = sight(&floor(0.0), &[first.clone(), photo(&away)], &camera());
-    assert_eq!(PairSight::of(a, b), PairSight::Unclear, "{a:?} {b:?}");
+    assert_eq!(PairSight::of(a, b), PairSight::Nowhere, "{a:?} {b:?}");
+    assert_eq!(PairSight::of(a, Look::Unclear), PairSight::Unclear);
     // Of one colour.
     let gray = RgbImage::from_pixel(480, 360, Rgb([90; 3]));
     let of_first = small(&first, &camera());
@@ -188,10 +237,13 @@ fn other_photos_tell_nothing() {
     };
     let surface = floor(0.0);
     let its_patches = patches(&surface, &of(&of_first, &poses[0]));
-    assert_eq!(seen_at(&its_patches, &of(&plain, &poses[1])), None);
+    assert_eq!(seen_at(&its_patches, &of(&plain, &poses[1])), Look::Unclear);
     assert!(patches(&surface, &of(&plain, &poses[1])).patches.is_empty());
     // From one place there is no parallax.
-    assert_eq!(seen_at(&its_patches, &of(&of_first, &poses[0])), None);
+    assert_eq!(
+        seen_at(&its_patches, &of(&of_first, &poses[0])),
+        Look::Unclear
+    );
     // The size of another camera.
     assert!(for_comparing(&RgbImage::new(48, 36), &camera).is_none());
 }

@@ -5,23 +5,24 @@ use glam::DVec3;
 use crate::fault::Fault;
 use crate::formats::photos::photo_metadata::PhotoMetadata;
 use crate::geodesy::{Crs, CrsKind, Geographic};
+use crate::geometry::median;
 
 /// The world that the photos lie in.
 pub(crate) struct World {
     crs: Crs,
-    /// Whole hundreds of metres near the first place: what coordinates are counted from.
+    /// Whole hundreds of metres near the place in the middle: what coordinates are counted from.
     pub(crate) origin: DVec3,
 }
 
 impl World {
-    /// Of the first photo with a place; `None` where none has one. `asked` is what the user wants, else it
+    /// Of the photo in the middle of those with a place, for the first may have strayed; `None` where none has one. `asked` is what the user wants, else it
     /// is the zone of UTM.
     ///
     /// # Errors
     /// Where `asked` is no projected coordinate system that the place lies in.
     pub(crate) fn of<'a>(
         asked: Option<&str>,
-        mut photos: impl Iterator<Item = &'a PhotoMetadata>,
+        photos: impl Iterator<Item = &'a PhotoMetadata>,
     ) -> Result<Option<Self>, Fault> {
         let asked = asked.map(Crs::understand).transpose()?;
         if let Some(crs) = asked
@@ -32,12 +33,13 @@ impl World {
             let remedy = "give a projected one such as EPSG:32633, or none for UTM";
             return Err(Fault::new(what, remedy));
         }
-        let first = photos.find_map(|photo| photo.place.filter(|place| place.height.is_some()));
-        let Some(first) = first else {
+        let places = photos.filter_map(|photo| photo.place.filter(|place| place.height.is_some()));
+        let places: Vec<Geographic> = places.map(|place| place.place).collect();
+        let Some(middle) = middle(&places) else {
             return Ok(None);
         };
-        let crs = asked.unwrap_or_else(|| Crs::utm_at(first.place));
-        let Some(center) = in_metres(&crs, first.place) else {
+        let crs = asked.unwrap_or_else(|| Crs::utm_at(middle));
+        let Some(center) = in_metres(&crs, middle) else {
             let what = format!("the photos do not lie where {} is defined", crs.name());
             return Err(Fault::new(
                 what,
@@ -45,7 +47,7 @@ impl World {
             ));
         };
         // Found at the end it would have cost the hours before.
-        crs.check_lengths(first.place)?;
+        crs.check_lengths(middle)?;
         let origin = (center / 100.0).round() * 100.0;
         Ok(Some(Self { crs, origin }))
     }
@@ -57,6 +59,17 @@ impl World {
         // A receiver's lapse to another continent helps nobody.
         (center.length() < 100_000.0).then_some(center)
     }
+}
+
+/// The place nearest to the medians of all.
+fn middle(places: &[Geographic]) -> Option<Geographic> {
+    let median_of =
+        |of: fn(&Geographic) -> f64| median(&mut places.iter().map(of).collect::<Vec<_>>());
+    let latitude = median_of(|place| place.latitude)?;
+    let longitude = median_of(|place| place.longitude)?;
+    let off = |place: &Geographic| (place.latitude - latitude).hypot(place.longitude - longitude);
+    let nearest = places.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+    nearest.copied()
 }
 
 /// The point of a place on the grid, in metres whatever the system counts in: so are accuracies, and what the adjustment takes
@@ -117,5 +130,20 @@ mod tests {
         // Made for 9 degrees farther west.
         let far = World::of(Some("EPSG:32628"), photos.iter()).map(|_| ());
         assert!(far.unwrap_err().what.contains("on the ground there"));
+    }
+
+    /// One that strayed, in whatever place, is not what the others are counted from.
+    #[test]
+    fn the_middle_is_none_that_strayed() {
+        let at = |latitude: f64, longitude: f64| Geographic {
+            latitude,
+            longitude,
+            height: 300.0,
+        };
+        let away = at(0.0, 0.0);
+        let places = [away, at(48.001, 9.0), at(48.002, 9.002), at(48.003, 9.001)];
+        let found = middle(&places).unwrap();
+        assert!(found.latitude > 48.0 && found.longitude >= 9.0);
+        assert!(middle(&[away]).is_some() && middle(&[]).is_none());
     }
 }
