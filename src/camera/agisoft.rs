@@ -18,7 +18,7 @@
 
 use glam::{DMat2, DVec2, DVec3};
 
-use super::branch::{invert, leads_outward};
+use super::branch::{Reach, invert};
 use super::not_invertible::NotInvertible;
 use super::polynomial::{smallest_positive_root, smallest_root_of_parts};
 
@@ -44,17 +44,15 @@ pub struct Agisoft {
     radial: [f64; 4],
     /// p1 p2 p3 p4.
     tangential: [f64; 4],
-    /// Radius within which nothing folds whatever the tangential terms do; where there are none, that at which the radial
-    /// factor folds or the projection ends.
-    sure: f64,
-    /// Radius at which the projection ends.
-    end: f64,
+    /// To where nothing folds whatever the tangential terms do, and to where the projection ends; without any, to the fold.
+    reach: Reach,
 }
 
 impl Agisoft {
     /// From `k1 k2 k3 k4` and `p1 p2 p3 p4`, all finite; missing ones are 0.
     pub fn new(projection: AgisoftProjection, radial: [f64; 4], tangential: [f64; 4]) -> Self {
         use std::f64::consts::PI;
+        // A plane's projection ends nowhere, and is looked at so far.
         let (end, looked_to) = match projection {
             AgisoftProjection::Frame => (f64::INFINITY, FARTHEST_RADIUS),
             AgisoftProjection::EquidistantFisheye => (PI, PI),
@@ -64,22 +62,28 @@ impl Agisoft {
         let growth = [1.0, 3.0 * k1, 5.0 * k2, 7.0 * k3, 9.0 * k4];
         let [p1, p2, p3, p4] = tangential;
         let p = 6.0 * p1.hypot(p2);
-        let sure = if p == 0.0 {
-            smallest_positive_root(&growth, looked_to.powi(2)).map_or(end, f64::sqrt)
+        let reach = if p == 0.0 {
+            let fold = smallest_positive_root(&growth, looked_to.powi(2));
+            Reach {
+                sure: fold.map_or(end, f64::sqrt),
+                end: 0.0,
+            }
         } else {
             // As long as both eigenvalues of the radial derivative are larger than what is the most that of the tangential
             // terms takes away: 6 p r (1 + 2 |p3| r2 + 3 |p4| r4).
             let most = [p, 2.0 * p * p3.abs(), 3.0 * p * p4.abs()];
             let parts = [growth, [1.0, k1, k2, k3, k4]];
             let roots = parts.map(|part| smallest_root_of_parts(&part, &most, looked_to));
-            roots.into_iter().flatten().fold(looked_to, f64::min)
+            Reach {
+                sure: roots.into_iter().flatten().fold(looked_to, f64::min),
+                end: looked_to,
+            }
         };
         Self {
             projection,
             radial,
             tangential,
-            sure,
-            end,
+            reach,
         }
     }
 
@@ -131,14 +135,7 @@ impl Agisoft {
 
     /// The distorted point and the derivative of the map, or `None` where it folds on the way or the projection ends.
     fn on_branch(&self, ideal: DVec2) -> Option<(DVec2, DMat2)> {
-        let radius = ideal.length();
-        let [p1, p2, ..] = self.tangential;
-        let leads = || {
-            (p1 != 0.0 || p2 != 0.0)
-                && radius < self.end.min(FARTHEST_RADIUS)
-                && leads_outward(|ideal| self.map(ideal).1, self.sure, ideal)
-        };
-        (radius < self.sure || leads()).then(|| self.map(ideal))
+        self.reach.on_branch(|ideal| self.map(ideal), ideal)
     }
 
     /// The distorted point and the derivative of the map.

@@ -47,18 +47,38 @@ pub(super) fn invert(
 /// Between two looks for a fold on the way outward the radius grows by this: a fold and its way back within less are not seen.
 const OUTWARD: f64 = 1.01;
 
-/// Whether the map leads outward all the way to `ideal` without folding: it is known not to fold up to the radius `sure`.
-/// `jacobian` is its derivative.
-pub(super) fn leads_outward(jacobian: impl Fn(DVec2) -> DMat2, sure: f64, ideal: DVec2) -> bool {
-    let radius = ideal.length();
-    let mut at = sure.max(1e-6).min(radius);
-    while jacobian(ideal * (at / radius)).determinant() > 0.0 {
-        if at >= radius {
-            return true;
-        }
-        at = (at * OUTWARD).min(radius);
+/// How far a map leads outward without folding.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Reach {
+    /// Within this radius it is known not to fold.
+    pub(super) sure: f64,
+    /// From here on it is not looked at; 0 where that radius alone decides.
+    pub(super) end: f64,
+}
+
+impl Reach {
+    /// The map at `ideal` (the distorted point and the derivative), or `None` where it folds on the way there.
+    pub(super) fn on_branch(
+        self,
+        map: impl Fn(DVec2) -> (DVec2, DMat2),
+        ideal: DVec2,
+    ) -> Option<(DVec2, DMat2)> {
+        let radius = ideal.length();
+        let is_on = radius < self.sure || radius < self.end && self.leads_outward(&map, ideal);
+        is_on.then(|| map(ideal))
     }
-    false
+
+    fn leads_outward(self, map: impl Fn(DVec2) -> (DVec2, DMat2), ideal: DVec2) -> bool {
+        let radius = ideal.length();
+        let mut at = self.sure.max(1e-6).min(radius);
+        while map(ideal * (at / radius)).1.determinant() > 0.0 {
+            if at >= radius {
+                return true;
+            }
+            at = (at * OUTWARD).min(radius);
+        }
+        false
+    }
 }
 
 /// Newton's method for a target near `map(start)`; `None` where it does not converge at once or

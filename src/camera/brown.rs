@@ -10,7 +10,7 @@
 
 use glam::{DMat2, DVec2};
 
-use super::branch::{invert, leads_outward};
+use super::branch::{Reach, invert};
 use super::not_invertible::NotInvertible;
 use super::polynomial::{smallest_positive_root, smallest_root_of_parts};
 
@@ -24,12 +24,8 @@ pub struct Brown {
     coefficients: [f64; 8],
     /// Squared radius of the fold of the radial factor, infinite where it has none.
     fold_squared: f64,
-    /// Radius within which nothing folds whatever the tangential terms do; that of the fold where there are none.
-    sure: f64,
-    /// Whether there are.
-    is_tangential: bool,
-    /// Radius at which the denominator is zero, or farther than is looked for.
-    pole: f64,
+    /// To where nothing folds whatever the tangential terms do; without any, to the fold.
+    reach: Reach,
 }
 
 impl Brown {
@@ -48,19 +44,25 @@ impl Brown {
             .into_iter()
             .filter_map(|p| smallest_positive_root(p, FARTHEST_RADIUS.powi(2)))
             .fold(f64::INFINITY, f64::min);
-        let is_tangential = p1 != 0.0 || p2 != 0.0;
-        let pole = smallest_root_of_parts(&denominator, &[], FARTHEST_RADIUS);
-        let pole = pole.unwrap_or(FARTHEST_RADIUS);
-        let sure = match is_tangential {
-            true => sure_radius(p1.hypot(p2), &growth, numerator, denominator).min(pole),
-            false => fold_squared.sqrt(),
+        let p = p1.hypot(p2);
+        let reach = match p == 0.0 {
+            true => Reach {
+                sure: fold_squared.sqrt(),
+                end: 0.0,
+            },
+            false => {
+                let pole = smallest_root_of_parts(&denominator, &[], FARTHEST_RADIUS);
+                let pole = pole.unwrap_or(FARTHEST_RADIUS);
+                Reach {
+                    sure: sure_radius(p, &growth, numerator, denominator).min(pole),
+                    end: pole,
+                }
+            }
         };
         Self {
             coefficients,
             fold_squared,
-            sure,
-            is_tangential,
-            pole,
+            reach,
         }
     }
 
@@ -96,14 +98,7 @@ impl Brown {
     /// The distorted point and the derivative of the map, or `None` beyond the fold. Tangential terms move that: on one side
     /// of the middle it lies farther out than the radial factor's, on the other nearer.
     fn on_branch(&self, ideal: DVec2) -> Option<(DVec2, DMat2)> {
-        let radius = ideal.length();
-        let is_sure = radius < self.sure;
-        let leads = || {
-            self.is_tangential
-                && radius < self.pole
-                && leads_outward(|ideal| self.map(ideal).1, self.sure, ideal)
-        };
-        (is_sure || leads()).then(|| self.map(ideal))
+        self.reach.on_branch(|ideal| self.map(ideal), ideal)
     }
 
     /// The distorted point and the derivative of the map.

@@ -75,7 +75,7 @@ pub struct SeenAt {
     pub here: f64,
     /// Whether that is another place than the surface's, by more than the pixels can be wrong.
     pub is_elsewhere: bool,
-    /// The share of the parts of what both photos show that match there, of those that can be told; 1 where few can.
+    /// The share of the parts of what both photos show that match there, of those that can be told; 1 where few can, and elsewhere.
     pub share: f64,
 }
 
@@ -155,7 +155,7 @@ pub fn seen_at(patches: &Patches, other: &Sighted<'_>) -> Look {
         _ => all.seen(|_| true, CLEAR),
     };
     match look {
-        Look::At(seen) => Look::At(SeenAt {
+        Look::At(seen) if !seen.is_elsewhere => Look::At(SeenAt {
             share: all.share_of_parts(&seen),
             ..seen
         }),
