@@ -245,4 +245,58 @@ mod tests {
         let outside = at(reach * 1.00001).unwrap_err();
         assert!((outside.fold - reach).abs() < 1e-6, "{outside}");
     }
+
+    /// Within the radius that is called sure the determinant is positive whichever the direction, also with p3 and p4; and it is not
+    /// called much too small: with growing terms alone the first fold lies within three times as far.
+    #[test]
+    fn what_is_called_sure_does_not_fold() {
+        let mut folds = 0;
+        for tangential in [
+            [0.02, 0.0, 0.0, 0.0],
+            [-0.01, 0.03, 0.4, 0.0],
+            [0.005, -0.02, -0.8, 0.5],
+            [0.0, 0.05, 2.0, -3.0],
+        ] {
+            for radial in [[-0.3, 0.05, 0.0, 0.0], [0.1, -0.2, 0.0, 0.01], [0.0; 4]] {
+                let model = Agisoft::new(AgisoftProjection::Frame, radial, tangential);
+                let sure = model.reach.sure;
+                assert!(sure > 0.2, "{sure}");
+                let has_fold = |times: f64| {
+                    (0..360).any(|degrees| {
+                        let outward = DVec2::from_angle(f64::from(degrees).to_radians());
+                        let (_, jacobian) = model.map(outward * (sure * times));
+                        jacobian.determinant() <= 0.0
+                    })
+                };
+                let within = (1..100).map(|step| f64::from(step) / 100.0);
+                assert!(
+                    !within.into_iter().any(has_fold),
+                    "{radial:?} {tangential:?}"
+                );
+                let beyond = (100..300).map(|step| f64::from(step) / 100.0);
+                folds += u32::from(beyond.into_iter().any(has_fold));
+            }
+        }
+        // The first of all grows for ever. (numpy, by differences, has the same 11, and none within.)
+        assert_eq!(folds, 11);
+    }
+
+    /// A fold that the tangential terms move is where OpenCV's model has it.
+    #[test]
+    fn tangential_terms_move_the_fold_as_in_opencv() {
+        let ours = Agisoft::new(
+            AgisoftProjection::Frame,
+            [-0.3, 0.0, 0.0, 0.0],
+            [0.02, 0.01, 0.0, 0.0],
+        );
+        let theirs = Brown::new([-0.3, 0.0, 0.01, 0.02, 0.0, 0.0, 0.0, 0.0]);
+        for degrees in 0..360 {
+            let outward = DVec2::from_angle(f64::from(degrees).to_radians());
+            for radius in [0.5, 0.9, 0.97, 1.0, 1.03, 1.08, 1.12, 1.2, 2.0, 9.0] {
+                let at = outward * radius;
+                let sees = ours.distorted_from_direction(at.extend(1.0)).is_some();
+                assert_eq!(sees, theirs.distorted_from_ideal(at).is_some(), "{at}");
+            }
+        }
+    }
 }
