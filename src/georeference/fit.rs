@@ -134,7 +134,8 @@ fn of_another_shape(off: f64) -> Fault {
              tell how it is turned",
             significant_digits(off, 2)
         ),
-        "look for a wrong number, columns in another order (latitude first), marks in photos of another size, another coordinate system",
+        "look for a wrong number, columns in another order (latitude first), longitudes or latitudes without their minus, heights of two kinds (above \
+         the ellipsoid and above the sea), marks in photos of another size, another coordinate system",
     )
 }
 

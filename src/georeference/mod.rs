@@ -12,10 +12,12 @@ mod lengths;
 mod level;
 mod student;
 mod triangulate;
+mod turned_over;
 mod umeyama;
 
 pub use fit::{Fit, Pair, fit};
 pub use lengths::{KnownLength, LengthsFit, scale_of_lengths};
 pub use level::levelled;
 pub use triangulate::{Sight, Triangulated, triangulate};
+pub use turned_over::is_turned_over;
 pub use umeyama::similarity_of;

@@ -11,16 +11,20 @@ pub(crate) enum Ending {
     Image,
     /// Cameras, raw: packages name them, and nothing of them is read.
     Raw,
+    /// Telephones: nothing of them is read, and no package names them.
+    Unread,
 }
 
 /// In the order in which they are tried behind a photo's name.
-const ENDINGS: [(&str, Ending); 6] = [
+const ENDINGS: [(&str, Ending); 8] = [
     ("jpg", Ending::Photo),
     ("jpeg", Ending::Photo),
     ("tif", Ending::Image),
     ("tiff", Ending::Image),
     ("png", Ending::Photo),
     ("dng", Ending::Raw),
+    ("heic", Ending::Unread),
+    ("heif", Ending::Unread),
 ];
 
 /// The endings of files that can be read as images.

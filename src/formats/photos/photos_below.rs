@@ -1,6 +1,8 @@
 //! The photos of a folder: those that lie in it, or, where it has none, those in the folders that a camera made in it
 //! (a drone begins a new one after 999 photos, and counts anew).
 
+use std::collections::HashSet;
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -15,6 +17,8 @@ pub struct PhotosBelow {
     pub photos: Vec<(String, PathBuf)>,
     /// The folders within that have photos that are not among these, by name.
     pub others: Vec<String>,
+    /// Files that may be photos, of an ending whose metadata are not read, and that lie beside none of the same name, by name.
+    pub of_other_endings: Vec<String>,
 }
 
 impl PhotosBelow {
@@ -40,8 +44,37 @@ impl PhotosBelow {
             let found = photos_in(&folder.join(within))?;
             photos.extend(found.into_iter().map(|path| named(path, Some(within))));
         }
-        Ok(Self { photos, others })
+        let of_other_endings = of_other_endings(folder, &photos);
+        Ok(Self {
+            photos,
+            others,
+            of_other_endings,
+        })
     }
+}
+
+/// Those of a folder; a raw one beside its JPEG is that photo.
+fn of_other_endings(folder: &Path, photos: &[(String, PathBuf)]) -> Vec<String> {
+    let stem = |path: &Path| path.file_stem().unwrap_or_default().to_ascii_lowercase();
+    let known: HashSet<OsString> = photos.iter().map(|(_, path)| stem(path)).collect();
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let others = entries.map(|entry| entry.path()).filter(|path| {
+        let ending = path.extension().unwrap_or_default().to_string_lossy();
+        is_ending(&ending, Ending::Unread)
+            && !is_photo(path)
+            && !known.contains(&stem(path))
+            && path.is_file()
+    });
+    let mut names: Vec<String> = others
+        .map(|path| {
+            path.file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned()
+        })
+        .collect();
+    names.sort();
+    names
 }
 
 /// Whether a file is named like a photo.
@@ -136,9 +169,15 @@ mod tests {
         add("labels", "a.png");
         assert_eq!(found(), pair(all, "labels"));
         let others = "100MEDIA 101MEDIA DJI_202605011200_001 labels";
+        add("", "own.DNG");
+        add("", "ortho.TIF");
+        add("", "IMG_1.HEIC");
         add("", "own.jpg");
         assert_eq!(found(), pair("own.jpg", others));
         let file = PhotosBelow::read(&folder.path().join("own.jpg")).unwrap_err();
         assert!(file.to_string().contains("a folder of photos is needed"));
+        // A raw file beside its JPEG is the same photo.
+        let found = PhotosBelow::read(folder.path()).unwrap();
+        assert_eq!(found.of_other_endings, ["IMG_1.HEIC", "ortho.TIF"]);
     }
 }

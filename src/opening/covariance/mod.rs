@@ -18,6 +18,8 @@
 mod datum;
 mod inverse;
 
+use std::f64::consts::SQRT_2;
+
 use glam::{DMat3, DVec2, DVec3};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -60,7 +62,8 @@ pub struct Deviations {
 /// 0.002, as those of drones are; the radial ones are free.
 pub fn lens_deviations(camera: &Camera, focal: f64) -> [f64; LENS] {
     let middle = 0.005 * f64::from(camera.width.max(camera.height));
-    let [fx, fy] = [camera.fx, camera.fy].map(|length| focal * length);
+    // Two numbers that are wrong alike: of both together no more is known than of one.
+    let [fx, fy] = [camera.fx, camera.fy].map(|length| focal * length * SQRT_2);
     [fx, fy, middle, middle, 0.3, 0.3, 0.001, 0.001]
 }
 
@@ -228,13 +231,24 @@ fn depths(model: &Reconstruction) -> Vec<Option<f64>> {
 fn pixel_deviation(model: &Reconstruction, points: &[Vec<&Observation>]) -> Option<f64> {
     let off = points.iter().flatten();
     let off = off.filter_map(|seen| model.reprojection_px(seen));
-    let squares: Vec<f64> = off.map(|off| off * off).collect();
-    let unknown = model.photos.len() * POSE + points.len() * 3;
-    let free = (2 * squares.len())
-        .checked_sub(unknown)
+    deviation_of_pixels(off, model.photos.len(), points.len())
+}
+
+/// The same of how far observations lie `off`, pixels, when so many photos' poses and points were fitted to them; `None`
+/// where nothing is left over.
+pub fn deviation_of_pixels(
+    off: impl Iterator<Item = f64>,
+    photos: usize,
+    points: usize,
+) -> Option<f64> {
+    let (squares, count) = off.fold((0.0, 0_usize), |(sum, count), off| {
+        (sum + off * off, count + 1)
+    });
+    let free = (2 * count)
+        .checked_sub(photos * POSE + points * 3)
         .filter(|&free| free > 0)?;
     // Exact data of tests have none.
-    Some((squares.iter().sum::<f64>() / free as f64).sqrt().max(1e-6))
+    Some((squares / free as f64).sqrt().max(1e-6))
 }
 
 fn of<'a>(model: &'a Reconstruction, seen: &Observation) -> (&'a Camera, &'a Pose, DVec3) {

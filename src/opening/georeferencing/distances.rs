@@ -114,11 +114,11 @@ pub(super) fn lengthen(
     let by_positions = (result.similarity, result.scale_interval);
     let scale = found.scale / result.unit.metres();
     let ratio = scale / by_positions.0.scale;
-    // One distance between points that nobody marked is what somebody says.
-    let is_surer = match (found.scale_interval, by_positions.1) {
-        (Some(distances), Some(positions)) => distances <= positions,
-        _ => true,
-    };
+    // One distance between points that nobody marked is what somebody says: as sure as a tape is read.
+    let distances_sure = found.scale_interval.unwrap_or(LEAST_CONTRADICTION);
+    let is_surer = by_positions
+        .1
+        .is_none_or(|positions| distances_sure <= positions);
     let sure = |interval: Option<f64>| {
         interval.map_or_else(
             || "nobody knows how surely".to_owned(),

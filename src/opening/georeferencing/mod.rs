@@ -279,7 +279,13 @@ pub fn georeference_model(
             of_photos(reconstruction, positions, &world, &mut warnings).map_err(at_list)?;
         known.extend(photos);
     }
-    let mut result = match by_positions(&known, points.is_some()) {
+    let own = (positions.as_ref()).filter(|_| points.is_none() && request.positions.is_none());
+    let placed = by_positions(&known, points.is_some()).and_then(|placed| {
+        let turned = own
+            .and_then(|(_, own)| turned_over::by_receivers(&reconstruction.photos, own, &placed));
+        turned.map_or(Ok(placed), Err)
+    });
+    let mut result = match placed {
         // Nobody asked to be placed by the photos' own.
         Err(fault) if !distances.is_empty() && request.positions.is_none() => {
             warnings.push(format!(

@@ -45,6 +45,7 @@ pub(super) fn kept(
             name: measured.photo.clone(),
             position: DVec3::new(place.longitude, place.latitude, place.height),
             accuracy: None,
+            looks: None,
         }
     };
     let list = || PositionList {

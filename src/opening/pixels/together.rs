@@ -325,6 +325,7 @@ mod tests {
             here: 0.0,
             is_elsewhere: true,
             share: 1.0,
+            part_elsewhere: None,
         })
     }
 

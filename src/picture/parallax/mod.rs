@@ -79,10 +79,14 @@ impl PairSight {
         match (first.is_elsewhere, second.is_elsewhere) {
             (false, false) if share < LEAST => Self::Partly(share),
             (false, false) if share < MOST => Self::Unclear,
+            // Both see a part nearer than it is, or both see one farther.
+            (false, false) if is_alike(first.part_elsewhere, second.part_elsewhere) => {
+                Self::Partly(share)
+            }
             (false, false) => Self::There(a.abs().max(b.abs())),
             (true, true)
                 if a.abs().min(b.abs()) > WORTH_SAYING
-                    && (a - b).abs() < ALIKE * a.abs().max(b.abs()) =>
+                    && is_alike(Some(first.factor), Some(second.factor)) =>
             {
                 Self::Elsewhere(match first.there > second.there {
                     true => first,
@@ -92,6 +96,14 @@ impl PairSight {
             _ => Self::Unclear,
         }
     }
+}
+
+/// Whether two factors are of one error: see [`ALIKE`].
+fn is_alike(first: Option<f64>, second: Option<f64>) -> bool {
+    let (Some(a), Some(b)) = (first.map(|a| a - 1.0), second.map(|b| b - 1.0)) else {
+        return false;
+    };
+    (a - b).abs() < ALIKE * a.abs().max(b.abs())
 }
 
 /// The pixel of the undistorted image as a linear function of a factor f: (a + f b) / its third, where the factor moves a point

@@ -50,6 +50,13 @@ const FEWEST_PARTS: f64 = 4.0;
 const PART_MATCH: f64 = 0.04;
 const PART_CLEAR: f64 = 3.0;
 
+/// A part that is elsewhere by less is one of a rough surface that has few points.
+const WORTH_SAYING_OF_PART: f64 = 0.03;
+
+/// It is looked for so far nearer and farther, and by one of so many patches: farther off it would be most of what is shown.
+const FARTHEST_OF_PART: f64 = 0.16;
+const SOME: usize = 2;
+
 /// These wrong factors move patches by so many pixels of the small photo.
 const WRONG: [f64; 8] = [-14.0, -11.0, -8.0, -5.0, 5.0, 8.0, 11.0, 14.0];
 
@@ -77,6 +84,8 @@ pub struct SeenAt {
     pub is_elsewhere: bool,
     /// The share of the parts of what both photos show that match there, of those that can be told; 1 where few can, and elsewhere.
     pub share: f64,
+    /// At how many times its distance a part of it matches better than there, if one does clearly.
+    pub part_elsewhere: Option<f64>,
 }
 
 /// How a photo sees points of the surface that lie on the rays of another one.
@@ -157,6 +166,7 @@ pub fn seen_at(patches: &Patches, other: &Sighted<'_>) -> Look {
     match look {
         Look::At(seen) if !seen.is_elsewhere => Look::At(SeenAt {
             share: all.share_of_parts(&seen),
+            part_elsewhere: sweep(SOME).part_elsewhere(&seen),
             ..seen
         }),
         other => other,
@@ -244,14 +254,16 @@ impl<'a> Sweep<'a> {
             here: here.mean,
             is_elsewhere,
             share: 1.0,
+            part_elsewhere: None,
         }))
     }
 
     /// See [`SeenAt::share`]. A part is told where what the whole gives would stand out in it twice as far as it must.
     fn share_of_parts(&self, seen: &SeenAt) -> f64 {
+        let parts = self.parts();
         let moved = seen.factor.ln();
-        let right = self.by_part(moved);
-        let wrong = WRONG.map(|pixels| self.by_part(moved + self.of_pixels(pixels)));
+        let right = self.by_part(&parts, moved);
+        let wrong = WRONG.map(|pixels| self.by_part(&parts, moved + self.of_pixels(pixels)));
         let (mut told, mut matching) = (0.0, 0.0);
         for (part, right) in right.iter().enumerate() {
             let of_wrong: Vec<f64> = wrong.iter().filter_map(|wrong| wrong[part]).collect();
@@ -274,34 +286,72 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// The mean correlation of the patches in each part of what the other photo shows of them.
-    fn by_part(&self, moved: f64) -> [Option<f64>; PARTS * PARTS] {
-        let factor = moved.exp();
-        let each = self.patches.iter().filter_map(|(patch, rays)| {
-            // The part is of where it lies on the surface, whatever the factor.
+    /// See [`SeenAt::part_elsewhere`]. A part counts that matches best there, stands out as far as a whole photo must, and matches
+    /// half as well as the whole does where that is seen: it may lie there by half.
+    fn part_elsewhere(&self, seen: &SeenAt) -> Option<f64> {
+        let parts = self.parts();
+        let step = self.of_pixels(2.0 * STEP).min(0.02);
+        let most = (FARTHEST_OF_PART / step) as i32;
+        let all: Vec<(f64, [Option<f64>; PARTS * PARTS])> = (-most..=most)
+            .map(|at| f64::from(at) * step)
+            .map(|moved| (moved, self.by_part(&parts, moved)))
+            .collect();
+        let own = self.of_pixels(ITS_OWN);
+        let here = seen.factor.ln();
+        let away = own.max(WORTH_SAYING_OF_PART);
+        let clearest = (0..PARTS * PARTS).filter_map(|part| {
+            let of_part = all.iter();
+            let of_part = of_part.filter_map(|(moved, means)| Some((*moved, means[part]?)));
+            let of_part: Vec<(f64, f64)> = of_part.collect();
+            let best = of_part.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
+            let (best, mean) = best?;
+            if (best - here).abs() <= away || mean < 0.5 * seen.there {
+                return None;
+            }
+            let wrong = (of_part.iter()).filter(|(moved, _)| (moved - best).abs() > own);
+            let mut wrong: Vec<f64> = wrong.map(|(_, mean)| *mean).collect();
+            let [usual, deviation] = median_with_deviation(&mut wrong)?;
+            let clear = (mean - usual) / (deviation / 0.6745);
+            (clear >= CLEAR).then(|| (clear, (best - here).exp()))
+        });
+        let clearest = clearest.max_by(|a, b| a.0.total_cmp(&b.0));
+        clearest.map(|(_, factor)| factor)
+    }
+
+    /// In which part of what the other photo shows each patch lies, by where it is on the surface; `None` of those that it does
+    /// not show.
+    fn parts(&self) -> Vec<Option<usize>> {
+        let pixel = |rays: &[[DVec3; 2]]| {
             let [a, b] = rays[PIXELS / 2];
             let at = a + b;
             let pixel = (at.z > 0.0).then(|| (at / at.z).truncate())?;
-            Some((pixel, correlation(patch, rays, self.other, factor)?))
-        });
-        let each: Vec<(DVec2, f64)> = each.collect();
-        let min = each
-            .iter()
-            .fold(DVec2::INFINITY, |min, (at, _)| min.min(*at));
-        let max = each
-            .iter()
-            .fold(DVec2::NEG_INFINITY, |max, (at, _)| max.max(*at));
+            self.other.photo.at(pixel).map(|_| pixel)
+        };
+        let pixels: Vec<Option<DVec2>> = self.patches.iter().map(|(_, rays)| pixel(rays)).collect();
+        let shown = || pixels.iter().flatten();
+        let min = shown().fold(DVec2::INFINITY, |min, at| min.min(*at));
+        let max = shown().fold(DVec2::NEG_INFINITY, |max, at| max.max(*at));
         let side = (max - min).max(DVec2::splat(f64::MIN_POSITIVE)) / PARTS as f64;
-        let mut parts = [(0.0, 0_usize); PARTS * PARTS];
-        for (at, correlation) in each {
-            let [column, row] = ((at - min) / side)
-                .to_array()
-                .map(|at| (at as usize).min(PARTS - 1));
-            let (sum, count) = &mut parts[row * PARTS + column];
-            *sum += correlation;
-            *count += 1;
+        let part = |at: &DVec2| {
+            let place = ((*at - min) / side).to_array();
+            let [column, row] = place.map(|at| (at as usize).min(PARTS - 1));
+            row * PARTS + column
+        };
+        pixels.iter().map(|at| at.as_ref().map(part)).collect()
+    }
+
+    /// The mean correlation of the patches in each of their [parts](Self::parts).
+    fn by_part(&self, parts: &[Option<usize>], moved: f64) -> [Option<f64>; PARTS * PARTS] {
+        let factor = moved.exp();
+        let mut means = [(0.0, 0_usize); PARTS * PARTS];
+        for ((patch, rays), part) in self.patches.iter().zip(parts) {
+            let Some(part) = *part else { continue };
+            if let Some(r) = correlation(patch, rays, self.other, factor) {
+                means[part].0 += r;
+                means[part].1 += 1;
+            }
         }
-        parts.map(|(sum, count)| (count >= FEWEST_OF_PART).then(|| sum / count as f64))
+        means.map(|(sum, count)| (count >= FEWEST_OF_PART).then(|| sum / count as f64))
     }
 
     /// The mean correlation of the patches that the other photo shows whole.

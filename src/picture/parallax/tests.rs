@@ -188,6 +188,41 @@ fn a_surface_that_is_right_in_a_part_confirms_nothing() {
     assert!(matches!(dug(3.5), PairSight::There(_)));
 }
 
+/// A pit of a metre's depth in a sixth of the floor, or a heap: what is left matches well, and so does the pit, a metre lower.
+#[test]
+fn a_small_part_that_lies_elsewhere_is_seen() {
+    let photos = poses().each_ref().map(photo);
+    let side = 180_i32;
+    for up in [-1.0, 1.0] {
+        let points = (0..side * side).map(|at| {
+            let place = |k: i32| (f64::from(k) + 0.5) / f64::from(side) * 2.0 * HALF - HALF;
+            let (x, y) = (place(at % side), place(at / side));
+            let is_dug = (x - 0.5).abs() < 2.2 && (y - 1.0).abs() < 2.2;
+            let up = if is_dug { up } else { 0.0 };
+            DVec3::new(x, y, height(x, y) + up)
+        });
+        let surface = Surface::new(Cloud {
+            points: points.collect(),
+            ..Cloud::default()
+        });
+        let [first, second] = sight(&surface.unwrap(), &photos, &camera());
+        let PairSight::Partly(share) = PairSight::of(first, second) else {
+            panic!("{first:?} {second:?}");
+        };
+        assert!(share > 0.6, "{share}");
+        for look in [first, second] {
+            let Look::At(seen) = look else {
+                panic!("{look:?}");
+            };
+            let factor = seen.part_elsewhere.unwrap();
+            assert!(
+                (factor / (10.0 / (10.0 - up)) - 1.0).abs() < 0.02,
+                "{up}: {factor}"
+            );
+        }
+    }
+}
+
 /// The photo that sees less of it counts.
 #[test]
 fn how_much_matches_decides() {
@@ -198,6 +233,7 @@ fn how_much_matches_decides() {
             here: 0.5,
             is_elsewhere: false,
             share,
+            part_elsewhere: None,
         })
     };
     let of = |first: f64, second: f64| PairSight::of(at(first), at(second));

@@ -172,6 +172,8 @@ impl Growing<'_> {
             images,
             places: HashMap::new(),
             whose: &Whose::of(model, self.photos),
+            pixel: None,
+            is_square: false,
             iterations,
         };
         adjust(model, adjustment, self.progress)

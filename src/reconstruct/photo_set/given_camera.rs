@@ -9,23 +9,38 @@ use crate::formats::photos::photo_metadata::is_another_focal;
 const GIVEN_FOCAL: f64 = 0.01;
 
 impl PhotoSet {
-    /// The same with a calibration for its photos of that size, which is kept.
+    /// The same with a calibration for its photos of that size, which is kept; where none is of that size, for those of the same
+    /// shape, whose numbers are the same in proportion.
     ///
     /// # Errors
-    /// Where no photo is of that size, or it is of a model that cannot be kept.
+    /// Where no photo is of that shape, or it is of a model that cannot be kept.
     pub fn with_camera(mut self, given: &Camera) -> Result<Self, Fault> {
         may_be_given(given)?;
+        let has_its_size = |its: &SurveyCamera| {
+            (its.camera.width, its.camera.height) == (given.width, given.height)
+        };
+        let is_exact = self.cameras.iter().any(has_its_size);
         let mut used = false;
         for its in &mut self.cameras {
-            if (its.camera.width, its.camera.height) == (given.width, given.height) {
-                used = true;
-                self.warnings.extend(of_other_photos(its, given));
-                *its = SurveyCamera {
-                    camera: given.clone(),
-                    focal_error: Some(GIVEN_FOCAL),
-                    is_given: true,
-                };
+            if is_exact && !has_its_size(its) {
+                continue;
             }
+            let Ok(camera) = given.rescaled(its.camera.width, its.camera.height) else {
+                continue;
+            };
+            used = true;
+            self.warnings.extend(of_other_photos(its, &camera));
+            if !is_exact {
+                self.warnings.push(format!(
+                    "the given calibration is of photos of {} x {} px, and these have {} x {} px: its numbers are taken in proportion",
+                    given.width, given.height, camera.width, camera.height
+                ));
+            }
+            *its = SurveyCamera {
+                camera,
+                focal_error: Some(GIVEN_FOCAL),
+                is_given: true,
+            };
         }
         if used {
             return Ok(self);
@@ -113,6 +128,36 @@ mod tests {
             skew: 0.0,
             distortion: Distortion::None,
         }
+    }
+
+    /// Reduced to a quarter; cut to another shape it is refused.
+    #[test]
+    fn a_calibration_of_another_size_is_taken_in_proportion() {
+        let reduced = Camera {
+            width: 1000,
+            height: 750,
+            cx: 501.0,
+            cy: 374.0,
+            ..camera(760.0)
+        };
+        let set = photos().with_camera(&reduced).unwrap();
+        let found = &set.cameras[0].camera;
+        assert_eq!(
+            (found.width, found.fx, found.cx, found.cy),
+            (4000, 3040.0, 2004.0, 1496.0)
+        );
+        let [said] = &set.warnings[..] else {
+            panic!("{:?}", set.warnings);
+        };
+        assert!(
+            said.contains("of 1000 x 750 px, and these have 4000 x 3000 px"),
+            "{said}"
+        );
+        let cut = Camera {
+            height: 700,
+            ..reduced
+        };
+        assert!(photos().with_camera(&cut).is_err());
     }
 
     #[test]

@@ -141,6 +141,7 @@ impl PhotoSet {
         let PhotosBelow {
             photos: files,
             others: below,
+            of_other_endings,
         } = PhotosBelow::read(folder)?;
         progress.stage(format!("reading the headers of {} photos", files.len()));
         let mut left_out = Vec::new();
@@ -182,6 +183,10 @@ impl PhotoSet {
                 files.len()
             );
             let remedy = match below.is_empty() {
+                true if !of_other_endings.is_empty() => format!(
+                    "make JPEG files with their metadata of those that are not read: {}",
+                    first_names(&of_other_endings)
+                ),
                 true => "add photos that overlap, or name the folder in which they lie".to_owned(),
                 false => format!(
                     "name one of its folders that have some: {}",
@@ -197,6 +202,13 @@ impl PhotoSet {
         if !below.is_empty() {
             let names = first_names(&below);
             warnings.push(format!("photos in folders within it are not taken ({names}): move them to the others, or name that folder"));
+        }
+        if !of_other_endings.is_empty() {
+            warnings.push(format!(
+                "{} files are not taken, whose metadata are not read ({}): make JPEG files with their metadata of those that are photos",
+                of_other_endings.len(),
+                first_names(&of_other_endings)
+            ));
         }
         let world = World::of(crs, read.iter().map(|(.., metadata)| metadata)).map_err(at)?;
         let mut cameras = Cameras::default();

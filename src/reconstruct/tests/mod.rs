@@ -262,7 +262,7 @@ fn rendered_photos_become_their_flight() {
     let fault = reconstruct(&elsewhere, &Embedded::default(), &progress).unwrap_err();
     let said = fault.to_string();
     assert!(
-        said.contains("EPSG:32632, and this one would have EPSG:32633"),
+        said.contains("say other places now, or of another coordinate system (IMG_1.jpg"),
         "{said}"
     );
     assert!(read(&to, "poses.csv") == read(&again, "poses.csv"));
@@ -475,9 +475,10 @@ fn is_dense(flight: &Path, dense: DensePoints) {
     let mut above: Vec<f64> = above
         .map(|point| point.z - height(point.truncate()))
         .collect();
-    // How well the world's heights are known is stated apart: by the receivers.
+    // How well the world's heights are known is stated apart, by the receivers and the focal length: with one a tenth of a percent
+    // too long, as nine photos tell it, all lies 3 cm lower, and scales are the same.
     let all = geometry::median(&mut above).unwrap();
-    assert!(all.abs() < 0.02, "{all}");
+    assert!(all.abs() < 0.05, "{all}");
     let mut off: Vec<f64> = above.iter().map(|above| (above - all).abs()).collect();
     off.sort_by(f64::total_cmp);
     let share = |most: f64| off.partition_point(|off| *off <= most) as f64 / off.len() as f64;

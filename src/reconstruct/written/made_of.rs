@@ -9,7 +9,8 @@ use crate::engine::Engine;
 use crate::fault::first_names;
 use crate::photo_set::PhotoSet;
 
-/// The engine's line, one for each given camera, and one a photo: its camera, size in bytes, and name.
+/// The engine's line, one for each given camera, and for each photo one of its camera, size in bytes and name, and one of where
+/// it was taken, if it says so.
 pub(super) fn text(photos: &PhotoSet, engine: &dyn Engine) -> String {
     let mut text = format!("{}\n", engine.name());
     for given in photos.cameras.iter().filter(|camera| camera.is_given) {
@@ -19,6 +20,10 @@ pub(super) fn text(photos: &PhotoSet, engine: &dyn Engine) -> String {
     for photo in &photos.photos {
         let size = fs::metadata(&photo.path).map_or(0, |file| file.len());
         let _ = writeln!(text, "{} {size} {}", photo.camera, photo.name);
+        if let Some(place) = photo.place {
+            let [x, y, z] = (photos.origin + place.center).to_array();
+            let _ = writeln!(text, "{AT}{x:.3} {y:.3} {z:.3} {}", photo.name);
+        }
     }
     text
 }
@@ -32,8 +37,21 @@ pub(super) fn difference(before: &str, now: &str) -> Option<String> {
     if before.photos != now.photos {
         return Some(of_other_photos(&before.photos, &now.photos));
     }
+    // Flights of older versions do not say them.
+    let says = !before.places.is_empty();
+    let of_other = |name: &&&str| before.places.get(**name) != now.places.get(**name);
+    let moved: Vec<&str> = (now.photos.keys()).filter(of_other).copied().collect();
+    if says && !moved.is_empty() {
+        return Some(format!(
+            "of photos that say other places now, or of another coordinate system ({})",
+            first_names(&moved)
+        ));
+    }
     if before.engine != now.engine {
         return Some(format!("made by another engine: {}", before.engine));
+    }
+    if before.cameras == now.cameras && before.of_photos == now.of_photos {
+        return None;
     }
     Some(
         match (before.cameras.is_empty(), now.cameras.is_empty()) {
@@ -52,32 +70,52 @@ struct MadeOf<'a> {
     cameras: Vec<&'a str>,
     /// Bytes by name.
     photos: BTreeMap<&'a str, u64>,
+    /// Cameras by name.
+    of_photos: BTreeMap<&'a str, usize>,
+    /// Places by name, as text.
+    places: BTreeMap<&'a str, &'a str>,
 }
 
 impl<'a> MadeOf<'a> {
     fn read(text: &'a str) -> Self {
         let mut lines = text.lines();
         let engine = lines.next().unwrap_or_default();
-        let (mut cameras, mut photos) = (Vec::new(), BTreeMap::new());
+        let mut made = Self {
+            engine,
+            cameras: Vec::new(),
+            photos: BTreeMap::new(),
+            of_photos: BTreeMap::new(),
+            places: BTreeMap::new(),
+        };
         for line in lines {
-            match photo(line) {
-                Some((name, size)) => drop(photos.insert(name, size)),
-                None => cameras.push(line),
+            match (photo(line), place(line)) {
+                (Some((camera, name, size)), _) => {
+                    made.photos.insert(name, size);
+                    made.of_photos.insert(name, camera);
+                }
+                (None, Some((name, place))) => drop(made.places.insert(name, place)),
+                (None, None) => made.cameras.push(line),
             }
         }
-        Self {
-            engine,
-            cameras,
-            photos,
-        }
+        made
     }
 }
 
-fn photo(line: &str) -> Option<(&str, u64)> {
+/// What stands before a place.
+const AT: &str = "at ";
+
+/// Its camera, name and bytes.
+fn photo(line: &str) -> Option<(usize, &str, u64)> {
     let (camera, rest) = line.split_once(' ')?;
     let (size, name) = rest.split_once(' ')?;
-    camera.parse::<usize>().ok()?;
-    Some((name, size.parse().ok()?))
+    Some((camera.parse().ok()?, name, size.parse().ok()?))
+}
+
+/// A photo's name and its place.
+fn place(line: &str) -> Option<(&str, &str)> {
+    let rest = line.strip_prefix(AT)?;
+    let (end, _) = rest.match_indices(' ').nth(2)?;
+    Some((&rest[end + 1..], &rest[..end]))
 }
 
 fn of_other_photos(before: &BTreeMap<&str, u64>, now: &BTreeMap<&str, u64>) -> String {
@@ -110,12 +148,13 @@ mod tests {
     /// What a user does: another engine, a photo more, a folder of other photos, a photo edited, a calibration found.
     #[test]
     fn what_differs_is_named() {
-        let before = "embedded (1.0)\n0 10 a.jpg\n0 20 with space.jpg\n";
+        let before =
+            "embedded (1.0)\n0 10 a.jpg\n0 20 with space.jpg\nat 1.0 2.0 3.5 with space.jpg\n";
         let difference = |now: &str| difference(before, now);
         assert_eq!(difference(before), None);
         for (now, expected) in [
             (
-                "colmap\n0 10 a.jpg\n0 20 with space.jpg\n",
+                "colmap\n0 10 a.jpg\n0 20 with space.jpg\nat 1.0 2.0 3.5 with space.jpg\n",
                 "made by another engine: embedded (1.0)",
             ),
             (
@@ -127,11 +166,18 @@ mod tests {
                 "of other photos (1 more now: b.jpg; 1 gone: with space.jpg; 1 changed since: a.jpg)",
             ),
             (
-                "embedded (1.0)\nCamera { name: \"1\" }\n0 10 a.jpg\n0 20 with space.jpg\n",
+                "embedded (1.0)\nCamera { name: \"1\" }\n0 10 a.jpg\n0 20 with space.jpg\nat 1.0 2.0 3.5 with space.jpg\n",
                 "whose lens was found, not given",
+            ),
+            (
+                "embedded (1.0)\n0 10 a.jpg\n0 20 with space.jpg\nat 1.0 2.0 3.6 with space.jpg\n",
+                "of photos that say other places now, or of another coordinate system (with space.jpg)",
             ),
         ] {
             assert_eq!(difference(now).as_deref(), Some(expected));
         }
+        // A flight of an older version does not say its places.
+        let old = "embedded (1.0)\n0 10 a.jpg\n0 20 with space.jpg\n";
+        assert_eq!(super::difference(old, before), None);
     }
 }

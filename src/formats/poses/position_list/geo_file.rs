@@ -54,6 +54,7 @@ pub(super) fn read(text: &str, crs: Option<String>) -> Result<PositionList, Faul
             name: name.to_owned(),
             position,
             accuracy,
+            looks: None,
         });
     }
     leave_out_without_height(&mut list, without_height)?;

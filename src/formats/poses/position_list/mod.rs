@@ -54,6 +54,8 @@ pub struct NamedPosition {
     pub position: DVec3,
     /// Standard deviations towards east, north and up, in metres, where the list states them.
     pub accuracy: Option<DVec3>,
+    /// The way that its camera looked, towards east, north and up, of length 1, where its gimbal says so.
+    pub looks: Option<DVec3>,
 }
 
 /// Ground control points.
@@ -95,8 +97,9 @@ pub fn positions_of_photos(folder: &Path) -> Result<PositionList, FileError> {
     let mut references = BTreeSet::new();
     let mut without = Vec::new();
     for (name, file) in &files {
-        let place = photo_metadata::read_file(file).ok();
-        let place = place.and_then(|metadata| metadata.place);
+        let metadata = photo_metadata::read_file(file).ok();
+        let place = metadata.as_ref().and_then(|metadata| metadata.place);
+        let gimbal = metadata.and_then(|metadata| metadata.orientation);
         let Some((place, height)) = place.and_then(|place| Some((place, place.height?))) else {
             without.push(name.clone());
             continue;
@@ -110,6 +113,7 @@ pub fn positions_of_photos(folder: &Path) -> Result<PositionList, FileError> {
                 place.place.height,
             ),
             accuracy: place.deviation,
+            looks: gimbal.map(|angles| angles.pose(DVec3::ZERO).rotation * DVec3::Z),
         });
     }
     if list.positions.is_empty() {

@@ -122,6 +122,7 @@ impl MrkFile {
             name: event.number.to_string(),
             position: event.position,
             accuracy: event.deviation,
+            looks: None,
         };
         PositionList {
             crs: Some("EPSG:4326".to_owned()),

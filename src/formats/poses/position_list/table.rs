@@ -360,6 +360,7 @@ impl Layout {
             name: name.to_owned(),
             position: DVec3::new(x, y, height),
             accuracy,
+            looks: None,
         }))
     }
 }

@@ -100,6 +100,7 @@ fn metashape_states_its_system_in_a_comment() {
             name: "DJI_1.JPG".to_owned(),
             position: DVec3::new(380000.5, 3950000.25, 80.125),
             accuracy: None,
+            looks: None,
         }]
     );
 }

@@ -115,6 +115,18 @@ fn a_distance_gives_the_length_and_positions_the_place() {
         "{found:?}"
     );
     assert!((found.lengths[1].fitted - 7.5).abs() < 1e-4, "{found:?}");
+    // Nor does one distance, of which nobody says how sure it is, beat receivers that tell the length to a thousandth.
+    let request = GeoreferenceRequest {
+        distances: vec!["0,0,0 0,0,1 8.1".parse().unwrap()],
+        ..request
+    };
+    let found = run(&request).unwrap();
+    assert_is_truth(&found.similarity, 1e-6);
+    let said = found.warnings.join("; ");
+    assert!(
+        said.contains("which are surer") && said.contains("contradict each other"),
+        "{said}"
+    );
 
     // What the package kept places it as well, unless it is to be level; on a line it does not, which is said.
     let utm = Crs::understand("EPSG:32632").unwrap();

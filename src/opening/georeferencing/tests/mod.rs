@@ -367,6 +367,34 @@ fn photos_that_look_at_the_sky_are_said() {
     assert!(swapped.contains(turned), "{swapped}");
 }
 
+/// Receivers whose longitudes lack their minus place nothing: nobody has looked at their list.
+#[test]
+fn mirrored_receivers_place_nothing() {
+    let utm = Crs::understand("EPSG:32632").unwrap();
+    let placed = |east: f64| {
+        let mut model = reconstruction();
+        let photos = reconstruction().photos.into_iter().zip(centers());
+        let measured = photos.map(|(photo, center)| MeasuredPosition {
+            photo: photo.name,
+            position: utm
+                .to_geographic(
+                    center
+                        .with_x(435_000.0 + east * (center.x - 435_000.0))
+                        .with_z(460.0),
+                )
+                .unwrap(),
+        });
+        model.measured_positions = measured.collect();
+        georeference_model(Path::new("model"), &model, &GeoreferenceRequest::default())
+    };
+    assert!(placed(1.0).is_ok());
+    let fault = placed(-1.0).unwrap_err().to_string();
+    assert!(
+        fault.contains("turn the pile over") && fault.contains("lack their minus"),
+        "{fault}"
+    );
+}
+
 /// Four points of which one is typed a metre off in height: a fit of seven numbers to twelve takes most of it up, and cannot tell
 /// which. And marks in a photo that is not there are named.
 #[test]
