@@ -36,7 +36,8 @@ impl State {
         let mut place = 0;
         while let Some(left) = self.kept_aside.left.get_mut(place) {
             let file = left.folder.flight_file();
-            if shown.is_some_and(|shown| files::is_same_file(shown, &file)) {
+            // The disk is asked where the paths differ alone.
+            if shown.is_some_and(|shown| shown == file || files::is_same_file(shown, &file)) {
                 left.is_open = true;
             } else if left.is_open && !is_opening {
                 self.kept_aside.left.remove(place).folder.remove();
