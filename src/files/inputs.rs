@@ -71,6 +71,18 @@ impl Inputs {
         self
     }
 
+    /// The files below a folder that were opened on the way, as they were named, sorted.
+    pub fn opened_below(&self, folder: &Path) -> Vec<PathBuf> {
+        let Ok(folder) = fs::canonicalize(folder) else {
+            return Vec::new();
+        };
+        let below = self.opened.by_path.iter();
+        let below = below.filter(|(real, _)| real.starts_with(&folder));
+        let mut files: Vec<PathBuf> = below.map(|(_, named)| named.clone()).collect();
+        files.sort();
+        files
+    }
+
     /// All of another list as well.
     pub fn extend(&mut self, other: &Self) {
         self.named.extend(&other.named);
@@ -192,6 +204,23 @@ impl Known {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_was_opened_below_a_folder_is_listed() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("below")).unwrap();
+        let files = [at("below/a.json"), at("b.laz"), at("LICENSE")];
+        for file in &files {
+            fs::write(file, "x").unwrap();
+        }
+        let inputs = Inputs::of([folder.path()]).with_opened(&files[..2]);
+        assert_eq!(
+            inputs.opened_below(folder.path()),
+            [at("b.laz"), at("below/a.json")]
+        );
+        assert_eq!(inputs.opened_below(&at("below")), [at("below/a.json")]);
+    }
 
     #[test]
     fn a_file_is_known_by_any_of_its_names() {

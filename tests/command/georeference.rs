@@ -180,7 +180,7 @@ fn a_models_own_errors_are_counted() {
     let flight = folder.path().join("world.toml");
     let more = ["--distance", "0,0,0 1,0,0 2.5", "-o", text(&flight)];
     let table = stdout_of(&command(&model, &more));
-    assert!(table.contains("poses: ± 0.00"), "{table}");
+    assert!(table.contains("poses: ± 0.0"), "{table}");
     let scales = scales_json(&flight, &[]);
     let counted = scales["photos"].as_array().expect("photos").iter();
     let counted: Vec<&Value> = counted

@@ -32,6 +32,7 @@ mod rectified;
 mod sheet;
 mod whose;
 
+use std::collections::HashSet;
 use std::fmt;
 use std::fs;
 use std::io;
@@ -217,7 +218,7 @@ pub fn export_for_split_desktop(
             "report this",
         ))
     })?;
-    let inputs = checked_inputs(request.from.inputs, progress).map_err(at_dir)?;
+    let inputs = checked_inputs(request.from, progress).map_err(at_dir)?;
     let sheet = sheet::html(
         request,
         &report,
@@ -461,26 +462,31 @@ struct CheckedInput {
 /// The most files of a folder that are listed.
 const LISTED: usize = 20;
 
-/// The inputs with their checksums; of a folder the files directly in it.
-fn checked_inputs(inputs: &[PathBuf], progress: &Progress) -> Result<Vec<CheckedInput>, Fault> {
+/// The inputs with their checksums; of a folder the files in it that were opened, but for the photos, which have their own.
+fn checked_inputs(from: &Provenance<'_>, progress: &Progress) -> Result<Vec<CheckedInput>, Fault> {
     progress.stage("checking the inputs");
+    let photos: HashSet<&Path> = from
+        .photo_files
+        .iter()
+        .flatten()
+        .map(PathBuf::as_path)
+        .collect();
+    let named: HashSet<&Path> = from.inputs.iter().map(PathBuf::as_path).collect();
     let mut checked = Vec::new();
-    for (done, input) in inputs.iter().enumerate() {
-        progress.advance(done as u64, inputs.len() as u64)?;
+    for (done, input) in from.inputs.iter().enumerate() {
+        progress.advance(done as u64, from.inputs.len() as u64)?;
         if !input.is_dir() {
             checked.push(checked_file(input, progress)?);
             continue;
         }
-        let entries = fs::read_dir(input).into_iter().flatten().flatten();
-        let mut files: Vec<PathBuf> = entries
-            .map(|entry| entry.path())
-            .filter(|path| path.is_file())
+        let opened = from.read.opened_below(input).into_iter();
+        let files: Vec<PathBuf> = opened
+            .filter(|file| !photos.contains(file.as_path()) && !named.contains(file.as_path()))
             .collect();
-        files.sort();
         if files.is_empty() || files.len() > LISTED {
             checked.push(CheckedInput {
                 path: input.clone(),
-                checksum: format!("a folder with {} files", files.len()),
+                checksum: format!("a folder, of which {} files were read", files.len()),
             });
             continue;
         }

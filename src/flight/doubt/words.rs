@@ -285,7 +285,7 @@ impl fmt::Display for Doubt {
                 error,
             } => write!(
                 f,
-                "{camera} has a focal length of {focal:.1} px, {:+.1} % from the {:.1} px of the photos' metadata ({source}, {:.1} % of error expected): check that the calibration is theirs",
+                "{camera} has a focal length of {focal:.1} px, {:+.1} % from the {:.1} px of the photos' metadata ({source}, {:.1} % of error expected): check that the calibration is theirs or, where it was found from these photos, add some that look obliquely",
                 (ratio - 1.0) * 100.0,
                 focal / ratio,
                 error * 100.0

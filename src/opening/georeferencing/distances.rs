@@ -188,10 +188,36 @@ fn fit_lengths(
     distances: &[KnownDistance],
     marked: &[MarkedPoint],
 ) -> Result<(Vec<(String, KnownLength)>, LengthsFit), Fault> {
-    let lengths = known_lengths(distances, marked)?;
+    let lengths = known_lengths(&each_once(distances), marked)?;
     let numbers: Vec<KnownLength> = lengths.iter().map(|(_, length)| *length).collect();
-    let found = scale_of_lengths(&numbers)?;
+    let mut found = scale_of_lengths(&numbers)?;
+    // Few that nobody marked agree by chance better than a tape is read.
+    if numbers.iter().any(|length| length.deviation.is_none()) {
+        let least = LEAST_CONTRADICTION / (numbers.len() as f64).sqrt();
+        found.scale_interval = found.scale_interval.map(|interval| interval.max(least));
+        let least = least / TO_95_PERCENT;
+        found.scale_error = found.scale_error.map(|error| error.max(least));
+    }
     Ok((lengths, found))
+}
+
+/// Without those that stand there twice, from either end: one does not check itself.
+fn each_once(distances: &[KnownDistance]) -> Vec<KnownDistance> {
+    let turned = |ends: &KnownEnds| match ends.clone() {
+        KnownEnds::Points(a, b) => KnownEnds::Points(b, a),
+        KnownEnds::Names(a, b) => KnownEnds::Names(b, a),
+    };
+    let mut kept: Vec<KnownDistance> = Vec::new();
+    for distance in distances {
+        let is_same = |other: &KnownDistance| {
+            other.metres == distance.metres
+                && (other.ends == distance.ends || other.ends == turned(&distance.ends))
+        };
+        if !kept.iter().any(is_same) {
+            kept.push(distance.clone());
+        }
+    }
+    kept
 }
 
 /// Known distances with what they are in the reconstruction, and what they are called.

@@ -113,7 +113,9 @@ fn pixel_deviation(model: &Reconstruction) -> f64 {
     let (photos, points) = (model.registered_image_count(), model.num_points3d());
     let count = off.len();
     let pixel = deviation_of_pixels(off.into_iter(), photos, points);
-    pixel.map_or(1.0, |pixel| counted_deviation(pixel.max(LEAST_PX), count, photos))
+    pixel.map_or(1.0, |pixel| {
+        counted_deviation(pixel.max(LEAST_PX), count, photos)
+    })
 }
 
 #[cfg(test)]

@@ -27,8 +27,9 @@ use crate::cli::outputs::Force;
 use crate::cli::{Answer, OutputUnit};
 use crate::delineation::measures::SieveShape;
 use crate::exports::{self, FoundSize, FragmentSizes, FragmentTables, MapPlaces, MassWay};
-use crate::fault::Fault;
+use crate::fault::{Fault, first_names};
 use crate::files::Kind;
+use crate::flight::{Limits, Verdict};
 use crate::formats::read_bytes;
 use crate::jobs::Progress;
 use crate::opening::Opened;
@@ -126,6 +127,7 @@ pub(in crate::cli) fn delineate_of(
     warnings.extend(of_tail);
     warnings.extend(planned.warnings.iter().cloned());
     warnings.extend(places.fault().map(|fault| fault.to_string()));
+    warnings.extend(of_doubtful(opened, &planned, progress).map_err(in_flight)?);
 
     let each = EachPhoto::new(arguments, outliners, opened, &planned, &places, progress);
     let PhotosDone {
@@ -174,4 +176,35 @@ pub(in crate::cli) fn delineate_of(
         failed: not_all.map(in_flight),
     };
     Ok((answer, of_all))
+}
+
+/// That some of the photos are not to be trusted. Photos are read for it where all are outlined, which takes longer.
+fn of_doubtful(
+    opened: &Opened,
+    planned: &Planned,
+    progress: &Progress,
+) -> Result<Option<String>, Fault> {
+    // Of a part of a surface nothing is said.
+    if opened.flight.parts().surface.is_part() {
+        return Ok(None);
+    }
+    let limits = Limits::default();
+    let review = match planned.photos.are_all() {
+        true => opened.review(&limits, progress)?,
+        false => opened.review_without_colours(&limits, progress)?,
+    };
+    let doubtful = planned.chosen.iter().filter_map(|&index| {
+        let photo = review.photo(index)?;
+        let is_doubtful = matches!(photo.settled()?, Verdict::Check | Verdict::NoScale);
+        is_doubtful.then(|| photo.name().to_owned())
+    });
+    let doubtful: Vec<String> = doubtful.collect();
+    Ok((!doubtful.is_empty()).then(|| {
+        format!(
+            "{} of {} photos are not to be trusted ({}), and their sizes are no surer than their scales: `fragscale check` says why",
+            doubtful.len(),
+            planned.chosen.len(),
+            first_names(&doubtful)
+        )
+    }))
 }

@@ -128,6 +128,20 @@ fn a_distance_gives_the_length_and_positions_the_place() {
         "{said}"
     );
 
+    // The same distance twice, from either end, is one; two that agree to the digit are as sure as tapes are.
+    let of = |distances: [&str; 2]| {
+        let request = GeoreferenceRequest {
+            distances: distances.map(|text| text.parse().unwrap()).to_vec(),
+            ..GeoreferenceRequest::default()
+        };
+        georeference_model(Path::new("model"), &reconstruction(), &request).unwrap()
+    };
+    assert_eq!(of(["0,0,0 0,0,1 7.6", "0,0,1 0,0,0 7.6"]).scale_error, None);
+    let two = of(["0,0,0 0,0,1 7.6", "0,0,0 0,1,0 7.6"])
+        .scale_interval
+        .unwrap();
+    assert!((two - 0.005 / 2.0_f64.sqrt()).abs() < 1e-9, "{two}");
+
     // What the package kept places it as well, unless it is to be level; on a line it does not, which is said.
     let utm = Crs::understand("EPSG:32632").unwrap();
     let mut model = reconstruction();
