@@ -130,7 +130,7 @@ fn weighted(pairs: &[Pair], middle: DVec3) -> (Vec<Weighted>, bool) {
 fn of_another_shape(off: f64) -> Fault {
     Fault::new(
         format!(
-            "the known positions are {} off where the fit has them: they are not of the shape that the reconstruction has, and do not \
+            "the known positions are {} units of the world off where the fit has them: they are not of the shape that the reconstruction has, and do not \
              tell how it is turned",
             significant_digits(off, 2)
         ),

@@ -329,6 +329,7 @@ pub fn georeference_model(
         };
         let names = first_names(&outliers);
         warnings.push(format!("{do_not} left out of the fit: {names}"));
+        warnings.extend(receivers::sure_but_not_used(&known, &result));
     }
     let contradiction = marks::contradiction(&marked, &result);
     if let Some(degrees) = result

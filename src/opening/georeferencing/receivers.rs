@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
 
-use super::Georeferenced;
 use super::list_world::ListWorld;
 use super::photo_names::PhotoNames;
+use super::{Georeferenced, Known, KnownKind};
+use crate::fault::first_names;
 use crate::files::FileError;
 use crate::formats::poses::position_list::{NamedPosition, PositionList, positions_of_photos};
 use crate::formats::{MeasuredPosition, Reconstruction};
@@ -54,6 +55,29 @@ pub(super) fn kept(
         warnings: Vec::new(),
     };
     (!measured.is_empty()).then(|| (model.to_owned(), list()))
+}
+
+/// A receiver that says it is off by no more, metres, hardly ever is by many times that.
+const SURE: f64 = 0.3;
+
+/// What photos may be whose receivers say that they are sure, and contradict the others: the only sign of a photo of another focal
+/// length than its file states, which bends the model so that all scales are wrong.
+pub(super) fn sure_but_not_used(known: &[Known], fit: &Georeferenced) -> Option<String> {
+    let both = known.iter().zip(&fit.positions);
+    let sure = both.filter(|(known, position)| {
+        let accuracy = known.pair.accuracy.map(|own| own * fit.unit.metres());
+        position.kind == KnownKind::Photo
+            && !position.used
+            && accuracy.is_some_and(|own| own <= SURE)
+    });
+    let names: Vec<&str> = sure.map(|(known, _)| known.name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "the receivers of these photos say that they are sure ({}): if they are, the photos were zoomed, cropped or stabilised, which their files do not \
+             say, and the scales of all are wrong; reconstruct once without them, and compare",
+            first_names(&names)
+        )
+    })
 }
 
 /// That a list brings the photos to another place than their own receivers say they were at; `None` in a

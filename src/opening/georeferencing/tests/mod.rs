@@ -367,6 +367,33 @@ fn photos_that_look_at_the_sky_are_said() {
     assert!(swapped.contains(turned), "{swapped}");
 }
 
+/// A photo that was zoomed stands nearer by the others than its receiver, sure to centimetres, says. One that is sure to metres may
+/// be wrong by itself.
+#[test]
+fn sure_receivers_that_contradict_tell_of_other_lenses() {
+    let said = |sure: f64| {
+        let lines = (0..).zip(centers()).map(|(i, center)| {
+            let up = if i == 3 { 40.0 * sure } else { 0.0 };
+            let [x, y, z] = (center + DVec3::Z * up).to_array();
+            format!("img_{i:04}.jpg {x} {y} {z} 0 0 0 {sure} {sure}\n")
+        });
+        let list = List::new(&format!("EPSG:32632\n{}", lines.collect::<String>()));
+        let request = GeoreferenceRequest {
+            positions: Some(list.path()),
+            ..GeoreferenceRequest::default()
+        };
+        let found = run(&request).unwrap();
+        assert_eq!(found.used(), 11);
+        found.warnings.join("; ")
+    };
+    let (sure, unsure) = (said(0.02), said(2.0));
+    assert!(
+        sure.contains("say that they are sure (flight/IMG_0003.JPG)"),
+        "{sure}"
+    );
+    assert!(!unsure.contains("that they are sure"), "{unsure}");
+}
+
 /// Receivers whose longitudes lack their minus place nothing: nobody has looked at their list.
 #[test]
 fn mirrored_receivers_place_nothing() {
