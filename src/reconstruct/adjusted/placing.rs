@@ -2,8 +2,9 @@
 //! neither bends nor loses its focal length over flat ground.
 //!
 //! Places and lenses count as much as they are known beside where photos see points, which the model itself tells
-//! (0.1 to 0.5 pixels, of which not all of a photo's count by themselves): weighed against a pixel, whatever they are, scales hung
-//! ten times as much on the focal length that the maker states as was said.
+//! (0.1 to 0.5 pixels): weighed against a pixel, whatever they are, scales hung ten times as much on the focal length that the
+//! maker states as was said. How sure the outcome is, is stated more carefully: there not every point counts by itself
+//! (`covariance`). Weighed likewise, an EXIF that was 15 % off moved the scales of twelve photos by 0.5 %, four times what it states.
 
 use std::collections::{HashMap, HashSet};
 
@@ -18,7 +19,7 @@ use super::level::level;
 use crate::fault::Fault;
 use crate::georeference::{Pair, fit, is_turned_over};
 use crate::jobs::Progress;
-use crate::opening::covariance::{counted_deviation, deviation_of_pixels};
+use crate::opening::covariance::deviation_of_pixels;
 
 /// No matcher tells where a photo sees a point better, pixels.
 const LEAST_PX: f64 = 0.02;
@@ -97,7 +98,7 @@ pub(super) fn place(
     Ok(())
 }
 
-/// As what a pixel's deviation counts. What nothing tells is a pixel; exact data of tests are what no matcher reaches.
+/// The deviation of where photos see points. What nothing tells is a pixel; exact data of tests are what no matcher reaches.
 fn pixel_deviation(model: &Reconstruction) -> f64 {
     let mut off = Vec::new();
     for (_, point) in model.points3d() {
@@ -111,11 +112,7 @@ fn pixel_deviation(model: &Reconstruction) -> f64 {
         off.extend(seen.filter(|off| off.is_finite()));
     }
     let (photos, points) = (model.registered_image_count(), model.num_points3d());
-    let count = off.len();
-    let pixel = deviation_of_pixels(off.into_iter(), photos, points);
-    pixel.map_or(1.0, |pixel| {
-        counted_deviation(pixel.max(LEAST_PX), count, photos)
-    })
+    deviation_of_pixels(off.into_iter(), photos, points).map_or(1.0, |pixel| pixel.max(LEAST_PX))
 }
 
 #[cfg(test)]

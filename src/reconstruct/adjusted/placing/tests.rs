@@ -142,7 +142,7 @@ impl Survey {
             let center = (center + DVec3::Z * HEIGHT * self.stated.0) / 10.0;
             let turn = of.rotation.transpose();
             let pose = cumulus3d_core::Rigid3::new(to_rotation(&turn), to_vector(-(turn * center)));
-            let image = Image::new(id, &format!("{:02}.jpg", id - 1), 1, pixels);
+            let image = Image::new(id, format!("{:02}.jpg", id - 1), 1, pixels);
             model.add_image_own_frame(image, Some(pose)).unwrap();
             model.register_image(id).unwrap();
         }
