@@ -125,6 +125,16 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         return Ok(Kind::Mission);
     }
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&start);
+    // Numbers in rows, as a cloud's are.
+    let is_of_colmap = [
+        &b"# Image list with two lines"[..],
+        b"# Camera list with one line",
+    ];
+    if is_of_colmap.iter().any(|magic| text.starts_with(magic))
+        && let Some(fault) = path.parent().and_then(colmap::incomplete)
+    {
+        return Err(FileError::new(path, fault));
+    }
     for (magic, kind) in [
         (&b"LASF"[..], Kind::Cloud(CloudFormat::Las)),
         (b"ply\n", Kind::Cloud(CloudFormat::Ply)),

@@ -319,3 +319,19 @@ fn one_file_is_its_own_candidate() {
     assert_eq!(candidates(&dir.path().join("notes.txt")), []);
     assert_eq!(candidates(&dir.path().join("none")), []);
 }
+
+/// A list of images alone is no cloud, though its rows are numbers: the model lacks its cameras.
+#[test]
+fn a_part_of_a_colmap_model_says_what_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let images = folder.path().join("images.txt");
+    let text = "# Image list with two lines of data per image:\n1 1 0 0 0 0 0 0 1 a.jpg\n\n";
+    fs::write(&images, text).unwrap();
+    for path in [images.as_path(), folder.path()] {
+        let said = detect(path).unwrap_err().to_string();
+        assert!(
+            said.contains("without cameras.bin or cameras.txt"),
+            "{said}"
+        );
+    }
+}

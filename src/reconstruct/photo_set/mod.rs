@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use glam::{DMat3, DVec3};
 use image::RgbImage;
 
+pub(crate) use self::given_camera::found_off_stated;
 use self::in_world::World;
 use self::twins::Twins;
 use crate::camera::{Camera, Distortion};
