@@ -74,7 +74,7 @@ pub(super) fn sure_but_not_used(known: &[Known], fit: &Georeferenced) -> Option<
     (!names.is_empty()).then(|| {
         format!(
             "the receivers of these photos say that they are sure ({}): if they are, the photos were zoomed, cropped or stabilised, which their files do not \
-             say, and the scales of all are wrong; reconstruct once without them, and compare",
+             say; where they have no lens of their own they bend the others, and all scales are wrong: reconstruct once without them, and compare",
             first_names(&names)
         )
     })

@@ -6,6 +6,7 @@
 //! bundle        poses, points and lenses adjusted together
 //! given_lens    calibrations that are kept
 //! placing       the model brought to the photos' places, and adjusted with them
+//! own_lens      photos that may have been zoomed
 //! level         which way is up without places
 //! stray         points that stand alone
 //! model_files   what comes out
@@ -21,6 +22,7 @@ mod guarded;
 mod in_order;
 mod level;
 mod model_files;
+mod own_lens;
 mod placing;
 mod stray;
 mod whose;

@@ -16,10 +16,14 @@ use super::Whose;
 use super::bundle::{Adjustment, adjust};
 use super::conversions::{point, pose, to_rotation, to_vector};
 use super::level::level;
+use super::own_lens::with_own_lenses;
 use crate::fault::Fault;
 use crate::georeference::{Pair, fit, is_turned_over};
 use crate::jobs::Progress;
 use crate::opening::covariance::deviation_of_pixels;
+
+/// Metres that a receiver may be off whose contradiction is believed, one standard deviation.
+const SURE: f64 = 0.3;
 
 /// No matcher tells where a photo sees a point better, pixels.
 const LEAST_PX: f64 = 0.02;
@@ -80,6 +84,22 @@ pub(super) fn place(
             (image, (to_vector(pair.target), deviation))
         }));
     }
+    let contradicting = fitted.as_ref().map(|fitted| {
+        let not_used = images.iter().zip(&pairs).zip(&fitted.used);
+        let sure = not_used.filter(|((image, pair), used)| {
+            let place = whose.photo(**image).and_then(|photo| photo.place);
+            !**used
+                && pair.accuracy.is_some_and(|own| own <= SURE)
+                && place.is_some_and(|place| place.deviation.is_some())
+        });
+        sure.map(|((image, _), _)| *image).collect::<HashSet<u32>>()
+    });
+    let contradicting = contradicting
+        .filter(|some| !some.is_empty() && whose.cameras().all(|(_, camera)| !camera.is_given));
+    if let Some(some) = &contradicting {
+        *model = with_own_lenses(model, some)?;
+    }
+    let whose = &whose.again(model);
     for is_square in [false, false, true] {
         progress.advance(0, 1)?;
         let adjustment = Adjustment {

@@ -33,6 +33,11 @@ impl<'a> Whose<'a> {
         }
     }
 
+    /// The same of a model of the same photos that has other cameras.
+    pub(crate) fn again(&self, model: &Reconstruction) -> Self {
+        Self::of(model, self.all)
+    }
+
     /// The photo that an engine calls so.
     pub(crate) fn photo(&self, image: u32) -> Option<&'a SurveyPhoto> {
         self.photos.get(&image).copied()

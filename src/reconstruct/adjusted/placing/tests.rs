@@ -44,6 +44,8 @@ struct Survey {
     receivers: DVec3,
     /// Of the stated focal length: how far off it is, and how far it is said to be, parts of it.
     stated: (f64, f64),
+    /// A photo that was zoomed, and how many times, which its file does not say.
+    zoomed: Option<(usize, f64)>,
     points: Vec<DVec3>,
     /// Those of the model, in its order.
     of_model: Vec<DVec3>,
@@ -60,6 +62,7 @@ impl Survey {
             centers,
             receivers: DVec3::new(2.0, 2.0, 5.0),
             stated,
+            zoomed: None,
             points: points.collect(),
             of_model: Vec::new(),
             noise,
@@ -119,13 +122,15 @@ impl Survey {
             numbers.extend(lens);
             EngineCamera::new(1, CameraModelKind::OpenCv, 4000, 3000, numbers).unwrap()
         };
-        let truth = numbers(FOCAL, LENS);
         model.add_camera(numbers(focal, [0.0; 4])).unwrap();
         model.add_rig(Rig::trivial(1)).unwrap();
         let mut tracks = vec![Vec::new(); self.points.len()];
         for (id, &center) in (1..).zip(&self.centers) {
             let of = Self::pose(center);
             let mut pixels = Vec::new();
+            let zoom = self.zoomed.filter(|(number, _)| *number + 1 == id as usize);
+            let zoom = zoom.map_or(1.0, |(_, zoom)| zoom);
+            let truth = numbers(FOCAL * zoom, LENS);
             for (point, track) in self.points.iter().zip(&mut tracks) {
                 let seen = of.camera_from_world(*point);
                 let Some(pixel) = truth.cam_to_img(&to_vector(seen)) else {
@@ -139,7 +144,8 @@ impl Survey {
                 }
             }
             // A longer focal length comes with a higher camera.
-            let center = (center + DVec3::Z * HEIGHT * self.stated.0) / 10.0;
+            let higher = (1.0 + self.stated.0) / zoom - 1.0;
+            let center = (center + DVec3::Z * HEIGHT * higher) / 10.0;
             let turn = of.rotation.transpose();
             let pose = cumulus3d_core::Rigid3::new(to_rotation(&turn), to_vector(-(turn * center)));
             let image = Image::new(id, format!("{:02}.jpg", id - 1), 1, pixels);
@@ -249,6 +255,41 @@ fn scales_hang_on_a_stated_focal_length_as_little_as_is_said() {
             let apart = (found[2].off - found[0].off).abs();
             assert!(apart < 0.0006, "{count}: {apart}");
         }
+    }
+}
+
+/// One of thirteen was zoomed by 8 %, and says nothing of it: with a lens of its own it does not bend the others, and its focal
+/// length is found.
+#[test]
+fn a_zoomed_photo_gets_a_lens_of_its_own() {
+    for zoomed in [None, Some((5, 1.08))] {
+        let centers = thirteen(&mut Noise(SplitMix(3)));
+        let mut survey = Survey::new(centers, (0.0, 0.02), 3);
+        survey.receivers = DVec3::splat(0.02);
+        survey.zoomed = zoomed;
+        let photos = survey.photos();
+        let mut model = survey.grown();
+        let whose = Whose::of(&model, &photos);
+        place(&mut model, &whose, &Progress::default()).unwrap();
+        let focal = |image| {
+            let camera = model.image(image).unwrap().camera_id;
+            model.camera(camera).unwrap().mean_focal()
+        };
+        assert_eq!(model.cameras().len(), 1 + usize::from(zoomed.is_some()));
+        let own = zoomed.map_or(1.0, |(_, zoom)| zoom);
+        let ratio = focal(6) / focal(1) / own;
+        assert!((ratio - 1.0).abs() < 0.002, "{ratio}");
+        // A focal length that all have too long comes with ground that is too deep by as much: the scales are right.
+        let top = point(&model.projection_center(1).unwrap()).z;
+        let mut depths: Vec<f64> = (model.points3d())
+            .map(|(id, found)| {
+                let truth = survey.of_model[usize::try_from(id).unwrap() - 1];
+                (top - point(&found.xyz).z) / (survey.centers[0].z - truth.z)
+            })
+            .collect();
+        let deeper = crate::geometry::median(&mut depths).unwrap();
+        let scale = focal(1) / FOCAL / deeper;
+        assert!((scale - 1.0).abs() < 0.0015, "{zoomed:?}: {scale}");
     }
 }
 
