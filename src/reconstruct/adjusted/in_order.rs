@@ -2,7 +2,7 @@
 //! ended.
 
 use cumulus3d_core::reconstruction::{Image, Point3D, Rig, TrackEntry};
-use cumulus3d_core::{Error, Reconstruction, Vec2};
+use cumulus3d_core::{Camera, Error, Reconstruction, Rigid3, Vec2};
 
 use super::failed;
 use crate::fault::Fault;
@@ -42,11 +42,7 @@ fn numbered<'a>(
     called: impl Iterator<Item = &'a str>,
     mut changed: impl FnMut(u32, u32, usize, Vec2) -> Vec2,
 ) -> Result<Reconstruction, Error> {
-    let mut made = Reconstruction::new();
-    for (&id, camera) in model.cameras() {
-        made.add_camera(camera.clone())?;
-        made.add_rig(Rig::trivial(id))?;
-    }
+    let mut made = with_cameras_of(model)?;
     let mut names = std::collections::HashMap::new();
     for ((id, photo), called) in (1..).zip(&photos.photos).zip(called) {
         let Some(image) = model.image_by_name(called) else {
@@ -56,11 +52,7 @@ fn numbered<'a>(
         let pixels = image.points2d().iter().enumerate();
         let pixels = pixels.map(|(number, point)| changed(was, camera, number, point.xy));
         let new = Image::new(id, &photo.name, camera, pixels);
-        let pose = model.world_to_cam(image.image_id);
-        made.add_image_own_frame(new, pose)?;
-        if pose.is_some() {
-            made.register_image(id)?;
-        }
+        add_image(&mut made, new, model.world_to_cam(was))?;
         names.insert(image.image_id, id);
     }
     for (id, point) in model.points3d() {
@@ -75,4 +67,35 @@ fn numbered<'a>(
         made.add_point3d_with_id(id, point)?;
     }
     Ok(made)
+}
+
+/// A model without photos that has the cameras of another.
+pub(super) fn with_cameras_of(model: &Reconstruction) -> Result<Reconstruction, Error> {
+    let mut made = Reconstruction::new();
+    for camera in model.cameras().values() {
+        add_camera(&mut made, camera.clone())?;
+    }
+    Ok(made)
+}
+
+/// Adds a camera, which is a rig by itself.
+pub(super) fn add_camera(model: &mut Reconstruction, camera: Camera) -> Result<(), Error> {
+    let id = camera.camera_id;
+    model.add_camera(camera)?;
+    model.add_rig(Rig::trivial(id))?;
+    Ok(())
+}
+
+/// Adds a photo, which is placed where it has a pose.
+pub(super) fn add_image(
+    model: &mut Reconstruction,
+    image: Image,
+    pose: Option<Rigid3>,
+) -> Result<(), Error> {
+    let id = image.image_id;
+    model.add_image_own_frame(image, pose)?;
+    if pose.is_some() {
+        model.register_image(id)?;
+    }
+    Ok(())
 }

@@ -4,10 +4,11 @@
 
 use std::collections::{HashMap, HashSet};
 
-use cumulus3d_core::reconstruction::{Image, Rig};
+use cumulus3d_core::reconstruction::Image;
 use cumulus3d_core::{Error, Reconstruction};
 
 use super::failed;
+use super::in_order::{add_camera, add_image, with_cameras_of};
 use crate::fault::Fault;
 
 /// The same model with a lens of its own for each of these photos, which begins as that of the others.
@@ -22,11 +23,7 @@ pub(super) fn with_own_lenses(
 }
 
 fn made(model: &Reconstruction, images: &HashSet<u32>) -> Result<Reconstruction, Error> {
-    let mut made = Reconstruction::new();
-    for (&id, camera) in model.cameras() {
-        made.add_camera(camera.clone())?;
-        made.add_rig(Rig::trivial(id))?;
-    }
+    let mut made = with_cameras_of(model)?;
     let mut own = HashMap::new();
     let free = model.cameras().keys().max().map_or(1, |most| most + 1);
     let mut sorted: Vec<u32> = images.iter().copied().collect();
@@ -38,8 +35,7 @@ fn made(model: &Reconstruction, images: &HashSet<u32>) -> Result<Reconstruction,
         if let Some(camera) = of {
             let mut camera = camera.clone();
             camera.camera_id = id;
-            made.add_camera(camera)?;
-            made.add_rig(Rig::trivial(id))?;
+            add_camera(&mut made, camera)?;
             own.insert(image, id);
         }
     }
@@ -47,11 +43,8 @@ fn made(model: &Reconstruction, images: &HashSet<u32>) -> Result<Reconstruction,
         let id = image.image_id;
         let camera = own.get(&id).copied().unwrap_or(image.camera_id);
         let pixels = image.points2d().iter().map(|point| point.xy);
-        let pose = model.world_to_cam(id);
-        made.add_image_own_frame(Image::new(id, &image.name, camera, pixels), pose)?;
-        if pose.is_some() {
-            made.register_image(id)?;
-        }
+        let new = Image::new(id, &image.name, camera, pixels);
+        add_image(&mut made, new, model.world_to_cam(id))?;
     }
     for (id, point) in model.points3d() {
         made.add_point3d_with_id(id, point.clone())?;

@@ -70,7 +70,7 @@ pub(super) fn place(
         });
         !is_turned_over(looks)
     });
-    let mut places = HashMap::new();
+    let (mut places, mut contradicting) = (HashMap::new(), HashSet::new());
     if let Some(fitted) = &fitted {
         let similarity = &fitted.similarity;
         model.transform(&Sim3::new(
@@ -78,26 +78,17 @@ pub(super) fn place(
             to_rotation(&similarity.rotation),
             to_vector(similarity.translation),
         ));
-        let used = images.iter().zip(&pairs).zip(&fitted.used);
-        places.extend(used.filter(|(_, used)| **used).map(|((&image, pair), _)| {
+        for ((&image, pair), &used) in images.iter().zip(&pairs).zip(&fitted.used) {
             let deviation = pair.accuracy.unwrap_or(Pair::USUAL_OF_RECEIVERS);
-            (image, (to_vector(pair.target), deviation))
-        }));
+            if used {
+                places.insert(image, (to_vector(pair.target), deviation));
+            } else if deviation <= SURE {
+                contradicting.insert(image);
+            }
+        }
     }
-    let contradicting = fitted.as_ref().map(|fitted| {
-        let not_used = images.iter().zip(&pairs).zip(&fitted.used);
-        let sure = not_used.filter(|((image, pair), used)| {
-            let place = whose.photo(**image).and_then(|photo| photo.place);
-            !**used
-                && pair.accuracy.is_some_and(|own| own <= SURE)
-                && place.is_some_and(|place| place.deviation.is_some())
-        });
-        sure.map(|((image, _), _)| *image).collect::<HashSet<u32>>()
-    });
-    let contradicting = contradicting
-        .filter(|some| !some.is_empty() && whose.cameras().all(|(_, camera)| !camera.is_given));
-    if let Some(some) = &contradicting {
-        *model = with_own_lenses(model, some)?;
+    if !contradicting.is_empty() && whose.cameras().all(|(_, camera)| !camera.is_given) {
+        *model = with_own_lenses(model, &contradicting)?;
     }
     let whose = &whose.again(model);
     for is_square in [false, false, true] {
