@@ -133,9 +133,21 @@ pub(super) fn lengthen(
     );
     let room = [found.scale_interval, by_positions.1].map(Option::unwrap_or_default);
     let room = room[0].hypot(room[1]).max(LEAST_OF_TAPE);
-    let contradict = match (ratio - 1.0).abs() > room {
-        true => format!(": {CONTRADICT}"),
-        false => String::new(),
+    let apart = (ratio - 1.0).abs();
+    let nobody_marked = lengths.iter().any(|(_, length)| length.deviation.is_none());
+    // Of two that contradict each other the true one is not known: both are within what is stated.
+    let both = (apart > room && is_surer && nobody_marked).then(|| {
+        (ratio.recip() - 1.0)
+            .abs()
+            .max(found.scale_interval.unwrap_or_default())
+    });
+    let contradict = match (apart > room, both) {
+        (false, _) => String::new(),
+        (true, None) => format!(": {CONTRADICT}"),
+        (true, Some(both)) => format!(
+            ": {CONTRADICT}; until then lengths are stated to ± {}",
+            percent(both)
+        ),
     };
     result.warnings.push(match is_surer {
         true => format!("{said}, which place it{contradict}"),
@@ -156,8 +168,8 @@ pub(super) fn lengthen(
             .map(|position| position.residual.length_squared())
             .sum();
         result.rms = Some((squares / used.len().max(1) as f64).sqrt());
-        result.scale_error = found.scale_error;
-        result.scale_interval = found.scale_interval;
+        result.scale_error = both.map(|both| both / TO_95_PERCENT).or(found.scale_error);
+        result.scale_interval = both.or(found.scale_interval);
     }
     result.lengths = fitted(lengths, result.similarity.scale * result.unit.metres());
     Ok(())

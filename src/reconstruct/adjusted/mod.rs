@@ -29,7 +29,7 @@ mod whose;
 
 use std::path::Path;
 
-pub(crate) use self::bundle::{Adjustment, adjust};
+pub(crate) use self::bundle::{Adjustment, Weighed, adjust};
 pub(crate) use self::conversions::{point, pose};
 pub(crate) use self::guarded::{failed, guarded, not_waited_for};
 pub(crate) use self::in_order::in_order;

@@ -1,10 +1,5 @@
 //! The model brought to where the photos were taken, and adjusted once more with those places: so that it
 //! neither bends nor loses its focal length over flat ground.
-//!
-//! Places and lenses count as much as they are known beside where photos see points, which the model itself tells
-//! (0.1 to 0.5 pixels): weighed against a pixel, whatever they are, scales hung ten times as much on the focal length that the
-//! maker states as was said. How sure the outcome is, is stated more carefully: there not every point counts by itself
-//! (`covariance`). Weighed likewise, an EXIF that was 15 % off moved the scales of twelve photos by 0.5 %, four times what it states.
 
 use std::collections::{HashMap, HashSet};
 
@@ -13,20 +8,13 @@ use cumulus3d_core::geometry::Sim3;
 use glam::DVec3;
 
 use super::Whose;
-use super::bundle::{Adjustment, adjust};
+use super::bundle::{Adjustment, Weighed, adjust};
 use super::conversions::{point, pose, to_rotation, to_vector};
 use super::level::level;
-use super::own_lens::with_own_lenses;
+use super::own_lens::{of_another_length, with_own_lenses};
 use crate::fault::Fault;
 use crate::georeference::{Pair, fit, is_turned_over};
 use crate::jobs::Progress;
-use crate::opening::covariance::deviation_of_pixels;
-
-/// Metres that a receiver may be off whose contradiction is believed, one standard deviation.
-const SURE: f64 = 0.3;
-
-/// No matcher tells where a photo sees a point better, pixels.
-const LEAST_PX: f64 = 0.02;
 
 /// Brings the model to the photos' places; without three of them it is only turned upright.
 ///
@@ -70,7 +58,7 @@ pub(super) fn place(
         });
         !is_turned_over(looks)
     });
-    let (mut places, mut contradicting) = (HashMap::new(), HashSet::new());
+    let mut places = HashMap::new();
     if let Some(fitted) = &fitted {
         let similarity = &fitted.similarity;
         model.transform(&Sim3::new(
@@ -82,23 +70,28 @@ pub(super) fn place(
             let deviation = pair.accuracy.unwrap_or(Pair::USUAL_OF_RECEIVERS);
             if used {
                 places.insert(image, (to_vector(pair.target), deviation));
-            } else if deviation <= SURE {
-                contradicting.insert(image);
             }
         }
     }
-    if !contradicting.is_empty() && whose.cameras().all(|(_, camera)| !camera.is_given) {
-        *model = with_own_lenses(model, &contradicting)?;
+    if whose.cameras().all(|(_, camera)| !camera.is_given) {
+        let zoomed = of_another_length(model, &places, whose, progress)?;
+        if !zoomed.is_empty() {
+            *model = with_own_lenses(model, &zoomed)?;
+        }
     }
     let whose = &whose.again(model);
-    for is_square in [false, false, true] {
+    let rounds = [
+        Weighed::ByItsPixels,
+        Weighed::ByItsPixels,
+        Weighed::ByItsSquarePixels,
+    ];
+    for weighed in rounds {
         progress.advance(0, 1)?;
         let adjustment = Adjustment {
             images: HashSet::new(),
             places: places.clone(),
             whose,
-            pixel: Some(pixel_deviation(model)),
-            is_square,
+            weighed,
             iterations: 100,
         };
         adjust(model, adjustment, progress)?;
@@ -107,23 +100,6 @@ pub(super) fn place(
         level(model, whose);
     }
     Ok(())
-}
-
-/// The deviation of where photos see points. What nothing tells is a pixel; exact data of tests are what no matcher reaches.
-fn pixel_deviation(model: &Reconstruction) -> f64 {
-    let mut off = Vec::new();
-    for (_, point) in model.points3d() {
-        let seen = point.track.iter().filter_map(|seen| {
-            let image = model.image(seen.image_id)?;
-            let camera = model.camera(image.camera_id)?;
-            let pose = model.world_to_cam(seen.image_id)?;
-            let found = camera.cam_to_img(&pose.transform_point(&point.xyz))?;
-            Some((found - image.point2d(seen.point2d_idx).xy).norm())
-        });
-        off.extend(seen.filter(|off| off.is_finite()));
-    }
-    let (photos, points) = (model.registered_image_count(), model.num_points3d());
-    deviation_of_pixels(off.into_iter(), photos, points).map_or(1.0, |pixel| pixel.max(LEAST_PX))
 }
 
 #[cfg(test)]

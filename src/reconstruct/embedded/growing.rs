@@ -11,7 +11,9 @@ use cumulus3d_sfm::triangulator::{TrackTriangulator, TrackTriangulatorOptions};
 
 use super::growth::Watch;
 use super::seed::{Seed, seeds};
-use crate::adjusted::{Adjustment, FEWEST_PHOTOS, Whose, adjust, failed, too_little_in_common};
+use crate::adjusted::{
+    Adjustment, FEWEST_PHOTOS, Weighed, Whose, adjust, failed, too_little_in_common,
+};
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::photo_set::PhotoSet;
@@ -172,8 +174,7 @@ impl Growing<'_> {
             images,
             places: HashMap::new(),
             whose: &Whose::of(model, self.photos),
-            pixel: None,
-            is_square: false,
+            weighed: Weighed::ByAPixel,
             iterations,
         };
         adjust(model, adjustment, self.progress)

@@ -1,5 +1,6 @@
 //! The photos of a folder that go into a reconstruction: whose camera took them, from where.
 
+mod found_lens;
 mod given_camera;
 mod in_world;
 mod twins;
@@ -9,7 +10,6 @@ use std::path::{Path, PathBuf};
 use glam::{DMat3, DVec3};
 use image::RgbImage;
 
-pub(crate) use self::given_camera::found_off_stated;
 use self::in_world::World;
 use self::twins::Twins;
 use crate::camera::{Camera, Distortion};

@@ -13,7 +13,7 @@ use crate::jobs::Progress;
 use crate::numbers::{four_digits, stated_percent};
 use crate::opening::Georeferenced;
 use crate::opening::covariance::{Deviations, Known, deviations};
-use crate::photo_set::{PhotoSet, SurveyCamera, found_off_stated};
+use crate::photo_set::{PhotoSet, SurveyCamera};
 use crate::surface::Cloud;
 
 /// The files, by name, `flight.toml` the last.
@@ -76,13 +76,7 @@ pub(crate) fn flight_files(
                 .to_owned(),
         );
     }
-    warnings.extend(
-        model
-            .cameras
-            .iter()
-            .enumerate()
-            .filter_map(|(at, found)| found_off_stated(photos.camera_of(&model, at)?, found)),
-    );
+    warnings.extend(photos.said_of_lenses(&model));
     let rows: Vec<PoseRow> = (model.photos.iter().enumerate())
         .map(|(number, photo)| PoseRow {
             camera: (model.cameras.len() > 1).then(|| model.cameras[photo.camera].name.clone()),

@@ -90,13 +90,30 @@ fn a_distance_gives_the_length_and_positions_the_place() {
         distances: vec!["0,0,0 0,0,1 24.606".parse().unwrap()],
         ..request.clone()
     };
+    let found = run(&feet).unwrap();
+    let said = found.warnings.join("; ");
     assert!(
-        run(&feet)
-            .unwrap()
-            .warnings
-            .join("; ")
-            .contains("they contradict each other")
+        said.contains("they contradict each other") && said.contains("lengths are stated to ± 69"),
+        "{said}"
     );
+    // Both are within what is stated: 24.606 is typed where receivers say 1.004 times 7.5.
+    let interval = found.scale_interval.unwrap();
+    assert!(
+        (interval - (1.0 - 7.53 / 24.606)).abs() < 0.001,
+        "{interval}"
+    );
+    assert_eq!(found.scale_error, Some(interval / 1.959_963_984_540_054));
+    // So it is with two that agree.
+    let short = GeoreferenceRequest {
+        distances: vec![
+            "0,0,0 0,0,1 7.2".parse().unwrap(),
+            "0,0,0 0,1,0 7.2".parse().unwrap(),
+        ],
+        ..request.clone()
+    };
+    let found = run(&short).unwrap();
+    let interval = found.scale_interval.unwrap();
+    assert!((interval - (7.53 / 7.2 - 1.0)).abs() < 0.001, "{interval}");
 
     // Good receivers know the length better than distances that do not agree.
     let exact = list(0.0);

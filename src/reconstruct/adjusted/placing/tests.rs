@@ -258,15 +258,34 @@ fn scales_hang_on_a_stated_focal_length_as_little_as_is_said() {
     }
 }
 
-/// One of thirteen was zoomed by 8 %, and says nothing of it: with a lens of its own it does not bend the others, and its focal
-/// length is found.
+/// One photo was zoomed, and says nothing of it: with a lens of its own it does not bend the others, and its focal length is found,
+/// whether its receiver is sure or not, and in small blocks.
 #[test]
 fn a_zoomed_photo_gets_a_lens_of_its_own() {
-    for zoomed in [None, Some((5, 1.08))] {
-        let centers = thirteen(&mut Noise(SplitMix(3)));
+    let sure = DVec3::splat(0.02);
+    let ordinary = DVec3::new(2.0, 2.0, 5.0);
+    for (count, receivers, zoom) in [
+        (13, sure, 1.0),
+        (13, sure, 1.08),
+        (13, ordinary, 1.0),
+        (13, ordinary, 1.03),
+        (6, sure, 1.0),
+        (6, sure, 1.03),
+        (7, sure, 0.97),
+        (7, ordinary, 1.0),
+        (7, ordinary, 1.04),
+        (6, ordinary, 0.97),
+    ] {
+        let mut centers = thirteen(&mut Noise(SplitMix(3)));
+        centers.retain(|at| match count {
+            6 => at.x > 2.0,
+            7 => at.x.abs() < 20.0,
+            _ => true,
+        });
+        assert_eq!(centers.len(), count);
         let mut survey = Survey::new(centers, (0.0, 0.02), 3);
-        survey.receivers = DVec3::splat(0.02);
-        survey.zoomed = zoomed;
+        survey.receivers = receivers;
+        survey.zoomed = (zoom != 1.0).then_some((5, zoom));
         let photos = survey.photos();
         let mut model = survey.grown();
         let whose = Whose::of(&model, &photos);
@@ -275,21 +294,26 @@ fn a_zoomed_photo_gets_a_lens_of_its_own() {
             let camera = model.image(image).unwrap().camera_id;
             model.camera(camera).unwrap().mean_focal()
         };
-        assert_eq!(model.cameras().len(), 1 + usize::from(zoomed.is_some()));
-        let own = zoomed.map_or(1.0, |(_, zoom)| zoom);
-        let ratio = focal(6) / focal(1) / own;
-        assert!((ratio - 1.0).abs() < 0.002, "{ratio}");
-        // A focal length that all have too long comes with ground that is too deep by as much: the scales are right.
-        let top = point(&model.projection_center(1).unwrap()).z;
-        let mut depths: Vec<f64> = (model.points3d())
+        assert_eq!(model.cameras().len(), 1 + usize::from(zoom != 1.0));
+        let ratio = focal(6) / focal(1) / zoom;
+        assert!((ratio - 1.0).abs() < 0.001, "{count} {zoom}: {ratio}");
+        // A focal length that all have too long comes with ground that is too deep by as much, and receivers make the world longer
+        // or shorter: the scales, beside that, are right.
+        let points = model.points3d();
+        let pairs: Vec<(DVec3, DVec3, f64)> = points
             .map(|(id, found)| {
                 let truth = survey.of_model[usize::try_from(id).unwrap() - 1];
-                (top - point(&found.xyz).z) / (survey.centers[0].z - truth.z)
+                (point(&found.xyz), truth, 1.0)
             })
             .collect();
-        let deeper = crate::geometry::median(&mut depths).unwrap();
-        let scale = focal(1) / FOCAL / deeper;
-        assert!((scale - 1.0).abs() < 0.0015, "{zoomed:?}: {scale}");
+        let to_truth = similarity_of(&pairs).unwrap();
+        for (image, zoom) in [(1, 1.0), (6, zoom)] {
+            let center = point(&model.projection_center(image).unwrap());
+            let scale = focal(image) / to_truth.apply(center).z;
+            let right = FOCAL * zoom / survey.centers[image as usize - 1].z;
+            let off = scale / right - 1.0;
+            assert!(off.abs() < 0.001, "{count} {zoom} {image}: {off}");
+        }
     }
 }
 
