@@ -258,7 +258,7 @@ pub fn deviation_of_pixels(
 
 /// As what a deviation of a pixel counts beside what else is known, where so many observations are of so many photos: see
 /// [`INDEPENDENT`].
-fn counted_deviation(pixel: f64, observations: usize, photos: usize) -> f64 {
+pub fn counted_deviation(pixel: f64, observations: usize, photos: usize) -> f64 {
     let each = observations as f64 / photos.max(1) as f64;
     pixel * (each / INDEPENDENT).max(1.0).sqrt()
 }

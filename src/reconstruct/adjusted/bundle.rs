@@ -140,18 +140,23 @@ pub(crate) fn adjust(
 }
 
 /// The deviation of where photos see points. What nothing tells is a pixel; exact data of tests are what no matcher reaches.
-fn pixel_deviation(model: &Reconstruction) -> f64 {
-    let mut off = Vec::new();
-    for (_, point) in model.points3d() {
-        let seen = point.track.iter().filter_map(|seen| {
-            let image = model.image(seen.image_id)?;
-            let camera = model.camera(image.camera_id)?;
-            let pose = model.world_to_cam(seen.image_id)?;
-            let found = camera.cam_to_img(&pose.transform_point(&point.xyz))?;
-            Some((found - image.point2d(seen.point2d_idx).xy).norm())
-        });
-        off.extend(seen.filter(|off| off.is_finite()));
-    }
+pub(super) fn pixel_deviation(model: &Reconstruction) -> f64 {
     let (photos, points) = (model.registered_image_count(), model.num_points3d());
-    deviation_of_pixels(off.into_iter(), photos, points).map_or(1.0, |pixel| pixel.max(LEAST_PX))
+    deviation_of_pixels(off_px(model), photos, points).map_or(1.0, |pixel| pixel.max(LEAST_PX))
+}
+
+/// How far points lie from where photos see them, pixels.
+pub(super) fn off_px(model: &Reconstruction) -> impl Iterator<Item = f64> {
+    let seen = model.points3d().flat_map(|(_, point)| {
+        let seen = point.track.iter();
+        seen.map(|seen| (point.xyz, seen.image_id, seen.point2d_idx))
+    });
+    let off = seen.filter_map(|(at, image, number)| {
+        let pose = model.world_to_cam(image)?;
+        let image = model.image(image)?;
+        let camera = model.camera(image.camera_id)?;
+        let found = camera.cam_to_img(&pose.transform_point(&at))?;
+        Some((found - image.point2d(number).xy).norm())
+    });
+    off.filter(|off| off.is_finite())
 }

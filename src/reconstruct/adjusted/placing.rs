@@ -11,7 +11,7 @@ use super::Whose;
 use super::bundle::{Adjustment, Weighed, adjust};
 use super::conversions::{point, pose, to_rotation, to_vector};
 use super::level::level;
-use super::own_lens::{of_another_length, with_own_lenses};
+use super::own_lens::{Trials, with_own_lenses};
 use crate::fault::Fault;
 use crate::georeference::{Pair, fit, is_turned_over};
 use crate::jobs::Progress;
@@ -74,7 +74,12 @@ pub(super) fn place(
         }
     }
     if whose.cameras().all(|(_, camera)| !camera.is_given) {
-        let zoomed = of_another_length(model, &places, whose, progress)?;
+        let trials = Trials {
+            places: &places,
+            whose,
+            progress,
+        };
+        let zoomed = trials.of_another_length(model)?;
         if !zoomed.is_empty() {
             *model = with_own_lenses(model, &zoomed)?;
         }
