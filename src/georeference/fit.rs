@@ -52,6 +52,10 @@ impl Pair {
     /// Standard deviation of a coordinate that a drone's receiver measured without saying how well, metres.
     pub const USUAL_OF_RECEIVERS: f64 = 5.0;
 
+    /// A receiver that says it is off by no more (one standard deviation, metres) hardly ever is by many times that: what contradicts
+    /// it may be wrong.
+    pub const SURE_OF_RECEIVERS: f64 = 0.3;
+
     /// One [`accuracy`](Self::accuracy) for all directions, of standard deviations along three axes.
     pub fn accuracy_of(deviations: DVec3) -> f64 {
         (deviations.length_squared() / 3.0).sqrt()

@@ -23,17 +23,15 @@ pub(crate) type Described<'a> = (usize, &'a Photo, PhotoMetadata);
 const LEAST_PLACES: usize = 3;
 /// Receivers of drones are rarely so far off, metres; where the better ones are worse, so many times as far as a quarter of them.
 const ELSEWHERE: f64 = 12.0;
-/// Where all say that they know their place to better than [`SURE`] a drone that moves while its shutter opens is not farther off.
+/// Where all say that they are sure of their place ([`Pair::SURE_OF_RECEIVERS`]) a drone that moves while its shutter opens is not farther off.
 const ELSEWHERE_OF_SURE: f64 = 3.0;
-/// Metres, along the axis that is worst: RTK, which is fixed.
-const SURE: f64 = 0.3;
 const ELSEWHERE_OF_BETTER: f64 = 8.0;
 
 /// So many positions tell a length: a fit to three leaves two numbers over.
 const LEAST_DISTANT: usize = 4;
 /// The share of a length from which a sentence is due, and how many times its interval it has to be: receivers err together.
 const WORTH_SAYING: f64 = 0.05;
-/// The same of receivers that are sure ([`SURE`]): a map's scale and the height above it are less.
+/// The same of receivers that are sure: a map's scale and the height above it are less.
 const WORTH_SAYING_OF_SURE: f64 = 0.01;
 const OF_INTERVAL: f64 = 1.5;
 
@@ -125,7 +123,7 @@ fn are_sure(described: &[Described<'_>]) -> bool {
     let mut places = described
         .iter()
         .filter_map(|(_, _, metadata)| metadata.place);
-    let is_sure = |deviation: DVec3| deviation.max_element() <= SURE;
+    let is_sure = |deviation: DVec3| deviation.max_element() <= Pair::SURE_OF_RECEIVERS;
     places.all(|place| place.deviation.is_some_and(is_sure))
 }
 

@@ -13,6 +13,7 @@ use crate::files::FileError;
 use crate::formats::poses::position_list::{NamedPosition, PositionList, positions_of_photos};
 use crate::formats::{MeasuredPosition, Reconstruction};
 use crate::geometry::median;
+use crate::georeference::Pair;
 use crate::numbers::significant_digits;
 
 /// Metres. A receiver without corrections is right to a tenth of this under open sky, and still to it beside a face;
@@ -57,9 +58,6 @@ pub(super) fn kept(
     (!measured.is_empty()).then(|| (model.to_owned(), list()))
 }
 
-/// A receiver that says it is off by no more, metres, hardly ever is by many times that.
-const SURE: f64 = 0.3;
-
 /// What photos may be whose receivers say that they are sure, and contradict the others: the only sign of a photo of another focal
 /// length than its file states, which bends the model so that all scales are wrong.
 pub(super) fn sure_but_not_used(known: &[Known], fit: &Georeferenced) -> Option<String> {
@@ -68,7 +66,7 @@ pub(super) fn sure_but_not_used(known: &[Known], fit: &Georeferenced) -> Option<
         let accuracy = known.pair.accuracy.map(|own| own * fit.unit.metres());
         position.kind == KnownKind::Photo
             && !position.used
-            && accuracy.is_some_and(|own| own <= SURE)
+            && accuracy.is_some_and(|own| own <= Pair::SURE_OF_RECEIVERS)
     });
     let names: Vec<&str> = sure.map(|(known, _)| known.name.as_str()).collect();
     (!names.is_empty()).then(|| {

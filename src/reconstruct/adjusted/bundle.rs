@@ -27,7 +27,7 @@ const SQUARE: f64 = 0.001;
 const LEAST_PX: f64 = 0.02;
 
 /// Pixels that a point may lie from where a photo sees it.
-const FARTHEST_PX: f64 = 4.0;
+pub(super) const FARTHEST_PX: f64 = 4.0;
 /// Degrees between two rays at least: below, the depth is noise.
 const LEAST_ANGLE: f64 = 1.5;
 

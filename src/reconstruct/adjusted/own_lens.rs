@@ -11,7 +11,7 @@ use std::collections::{HashMap, HashSet};
 use cumulus3d_core::reconstruction::Image;
 use cumulus3d_core::{Error, Reconstruction, Vec3};
 
-use super::bundle::{Adjustment, Weighed, adjust, off_px, pixel_deviation};
+use super::bundle::{Adjustment, FARTHEST_PX, Weighed, adjust, off_px, pixel_deviation};
 use super::in_order::{add_camera, add_image, with_cameras_of};
 use super::{Whose, failed};
 use crate::fault::Fault;
@@ -102,8 +102,12 @@ impl Trials<'_> {
             observations,
             with.registered_image_count(),
         );
+        // What did not fit was taken away: it counts as if it did just so.
+        let most = observations.max(off_px(without).count());
         let misfit = |model: &Reconstruction| {
-            let points: f64 = off_px(model).map(|off| (off / pixel).powi(2)).sum();
+            let missing = most - off_px(model).count();
+            let off = off_px(model).chain(std::iter::repeat_n(FARTHEST_PX, missing));
+            let points: f64 = off.map(|off| (off / pixel).powi(2)).sum();
             let places = self
                 .places
                 .iter()

@@ -58,7 +58,7 @@ pub(super) fn place(
         });
         !is_turned_over(looks)
     });
-    let mut places = HashMap::new();
+    let (mut places, mut contradicting) = (HashMap::new(), HashMap::new());
     if let Some(fitted) = &fitted {
         let similarity = &fitted.similarity;
         model.transform(&Sim3::new(
@@ -68,14 +68,19 @@ pub(super) fn place(
         ));
         for ((&image, pair), &used) in images.iter().zip(&pairs).zip(&fitted.used) {
             let deviation = pair.accuracy.unwrap_or(Pair::USUAL_OF_RECEIVERS);
+            let place = (to_vector(pair.target), deviation);
             if used {
-                places.insert(image, (to_vector(pair.target), deviation));
+                places.insert(image, place);
+            } else if deviation <= Pair::SURE_OF_RECEIVERS {
+                // It may be the photo's focal length.
+                contradicting.insert(image, place);
             }
         }
     }
     if whose.cameras().all(|(_, camera)| !camera.is_given) {
+        contradicting.extend(&places);
         let trials = Trials {
-            places: &places,
+            places: &contradicting,
             whose,
             progress,
         };

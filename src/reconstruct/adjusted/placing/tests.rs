@@ -46,6 +46,8 @@ struct Survey {
     stated: (f64, f64),
     /// A photo that was zoomed, and how many times, which its file does not say.
     zoomed: Option<(usize, f64)>,
+    /// How well photos see points, pixels.
+    seen_to: f64,
     points: Vec<DVec3>,
     /// Those of the model, in its order.
     of_model: Vec<DVec3>,
@@ -63,6 +65,7 @@ impl Survey {
             receivers: DVec3::new(2.0, 2.0, 5.0),
             stated,
             zoomed: None,
+            seen_to: SEEN_TO,
             points: points.collect(),
             of_model: Vec::new(),
             noise,
@@ -136,7 +139,7 @@ impl Survey {
                 let Some(pixel) = truth.cam_to_img(&to_vector(seen)) else {
                     continue;
                 };
-                let off = self.noise.vector(DVec3::splat(SEEN_TO));
+                let off = self.noise.vector(DVec3::splat(self.seen_to));
                 let pixel = Vec2::new(pixel.x + off.x, pixel.y + off.y);
                 if (0.0..4000.0).contains(&pixel.x) && (0.0..3000.0).contains(&pixel.y) {
                     track.push(TrackEntry::new(id, u32::try_from(pixels.len()).unwrap()));
@@ -161,6 +164,25 @@ impl Survey {
             }
         }
         model
+    }
+
+    /// By how much a photo's scale is off, a part of it, beside what the world is too long. A focal length that all have too long comes
+    /// with ground that is too deep by as much, and does not count.
+    fn scale_off(&self, model: &Reconstruction, image: u32, zoom: f64) -> f64 {
+        let points = model.points3d();
+        let pairs: Vec<(DVec3, DVec3, f64)> = points
+            .map(|(id, found)| {
+                let truth = self.of_model[usize::try_from(id).unwrap() - 1];
+                (point(&found.xyz), truth, 1.0)
+            })
+            .collect();
+        let to_truth = similarity_of(&pairs).unwrap();
+        let camera = model.image(image).unwrap().camera_id;
+        let focal = model.camera(camera).unwrap().mean_focal();
+        let center = point(&model.projection_center(image).unwrap());
+        let scale = focal / to_truth.apply(center).z;
+        let right = FOCAL * zoom / self.centers[image as usize - 1].z;
+        scale / right - 1.0
     }
 
     /// What came of it: see [`Found`].
@@ -297,23 +319,46 @@ fn a_zoomed_photo_gets_a_lens_of_its_own() {
         assert_eq!(model.cameras().len(), 1 + usize::from(zoom != 1.0));
         let ratio = focal(6) / focal(1) / zoom;
         assert!((ratio - 1.0).abs() < 0.001, "{count} {zoom}: {ratio}");
-        // A focal length that all have too long comes with ground that is too deep by as much, and receivers make the world longer
-        // or shorter: the scales, beside that, are right.
-        let points = model.points3d();
-        let pairs: Vec<(DVec3, DVec3, f64)> = points
-            .map(|(id, found)| {
-                let truth = survey.of_model[usize::try_from(id).unwrap() - 1];
-                (point(&found.xyz), truth, 1.0)
-            })
-            .collect();
-        let to_truth = similarity_of(&pairs).unwrap();
-        for (image, zoom) in [(1, 1.0), (6, zoom)] {
-            let center = point(&model.projection_center(image).unwrap());
-            let scale = focal(image) / to_truth.apply(center).z;
-            let right = FOCAL * zoom / survey.centers[image as usize - 1].z;
-            let off = scale / right - 1.0;
-            assert!(off.abs() < 0.001, "{count} {zoom} {image}: {off}");
-        }
+        let off = [(1, 1.0), (6, zoom)].map(|(image, zoom)| survey.scale_off(&model, image, zoom));
+        assert!(
+            off.iter().all(|off| off.abs() < 0.001),
+            "{count} {zoom}: {off:?}"
+        );
+    }
+}
+
+/// A receiver that is sure of a place two metres too high is not believed, and whatever lens its photo gets, its scale is right.
+#[test]
+fn a_receiver_that_is_wrong_and_sure_does_no_harm() {
+    let centers = thirteen(&mut Noise(SplitMix(3)));
+    let mut survey = Survey::new(centers, (0.0, 0.02), 3);
+    survey.receivers = DVec3::splat(0.02);
+    let mut photos = survey.photos();
+    photos.photos[5].place.as_mut().unwrap().center.z += 2.0;
+    let mut model = survey.grown();
+    let whose = Whose::of(&model, &photos);
+    place(&mut model, &whose, &Progress::default()).unwrap();
+    let off = [1, 6].map(|image| survey.scale_off(&model, image, 1.0));
+    assert!(off.iter().all(|off| off.abs() < 0.001), "{off:?}");
+}
+
+/// Six photos with so few points that focal lengths come out apart by themselves: the one that was zoomed makes receivers fit, and
+/// of the same photos without it none has a lens of its own.
+#[test]
+fn where_no_length_stands_out_the_farthest_has_to_fit_better() {
+    for zoom in [1.0, 1.035] {
+        let mut centers = thirteen(&mut Noise(SplitMix(3)));
+        centers.retain(|at| at.x > 2.0);
+        let mut survey = Survey::new(centers, (0.0, 0.02), 3);
+        survey.points.truncate(60);
+        survey.seen_to = 1.0;
+        survey.receivers = DVec3::splat(0.02);
+        survey.zoomed = (zoom != 1.0).then_some((4, zoom));
+        let photos = survey.photos();
+        let mut model = survey.grown();
+        let whose = Whose::of(&model, &photos);
+        place(&mut model, &whose, &Progress::default()).unwrap();
+        assert_eq!(model.cameras().len(), 1 + usize::from(zoom != 1.0));
     }
 }
 
