@@ -6,6 +6,7 @@ use chrono::Datelike;
 use crate::command::Choice;
 use crate::fault::one_line;
 use crate::flight::{Along, Date, Decision, DecisionKind, PhotoReview, Verdict};
+use crate::open_flight::reviewing::{STILL_LOOKING, no_scale};
 use crate::state::{Severity, State};
 
 impl State {
@@ -20,7 +21,7 @@ impl State {
     /// Takes many along.
     pub(crate) fn choose_all(&mut self, choice: Choice) {
         let accepted = self.choose_each(|_, reviewed| match choice {
-            Choice::WithScale => reviewed.own_verdict != Verdict::NoScale,
+            Choice::WithScale => no_scale(&reviewed).is_none(),
             Choice::Trusted => reviewed.own_verdict == Verdict::Trust,
             Choice::None => false,
         });
@@ -46,7 +47,9 @@ impl State {
         let mut settings = open.settings();
         for (place, photo) in open.review.photos().enumerate() {
             let wanted = wanted(place, photo);
-            if photo.goes_along(Along::Trusted) != wanted {
+            // Nobody can take along what is not there.
+            let can = !wanted || no_scale(&photo).is_none();
+            if can && photo.goes_along(Along::Trusted) != wanted {
                 let decision = photo.decision_to(wanted).map(|decision| Decision {
                     date: today(),
                     ..decision
@@ -67,10 +70,11 @@ impl State {
         let Some(reviewed) = open.review.photo(photo) else {
             return;
         };
-        // What is accepted is what was seen.
+        // What is accepted is what was seen, and a scale.
         let accepts = matches!(decision, Some((DecisionKind::Accepted, _)));
-        if accepts && !open.review.is_looked_at() {
-            self.say(Severity::Note, STILL_LOOKING);
+        let why_not = open.why_not_accepted(&reviewed).filter(|_| accepts);
+        if let Some(why_not) = why_not {
+            self.say(Severity::Note, why_not);
             return;
         }
         let decision = decision.map(|(kind, note)| Decision {
@@ -83,9 +87,6 @@ impl State {
         self.set_settings(settings);
     }
 }
-
-const STILL_LOOKING: &str =
-    "footprints and scale fields are still being looked at; decide when they are there";
 
 /// The day where this computer stands: the core knows no clock.
 fn today() -> Option<Date> {

@@ -130,6 +130,9 @@ fn look_at(
     for noted in &reasons {
         let _ = writeln!(text, "{}: {}", noted.whose, noted.notes);
     }
+    if let Some(others) = opening::without_pose(&opened.photo_files) {
+        let _ = writeln!(text, "{others}");
+    }
     Ok(Looked {
         text,
         warnings,

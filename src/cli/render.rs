@@ -194,6 +194,15 @@ fn share(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn render(arguments: &RenderArguments, progress: &Progress) -> Result<Answer, String> {
+    let ending = arguments.output.extension().unwrap_or_default();
+    if !ending.is_empty() && !ending.eq_ignore_ascii_case("png") {
+        let what = format!(
+            "a PNG is written here, and nothing as .{}",
+            ending.display()
+        );
+        let fault = Fault::new(what, "end the name in .png");
+        return Err(FileError::new(&arguments.output, fault).to_string());
+    }
     let inputs = arguments.flight.files().chain(&arguments.mission);
     let outputs = Outputs::new(arguments.force, inputs);
     let mut outputs = outputs.and(&arguments.output, Kind::Result)?;

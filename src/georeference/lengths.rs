@@ -39,8 +39,13 @@ pub fn scale_of_lengths(lengths: &[KnownLength]) -> Result<LengthsFit, Fault> {
     let is_length = |length: f64| length > 0.0 && length.is_finite();
     let are_lengths = |of: &KnownLength| is_length(of.found) && is_length(of.known);
     if lengths.is_empty() || !lengths.iter().all(are_lengths) {
+        let at_one = |of: &KnownLength| is_length(of.known) && of.found == 0.0;
+        let what = match lengths.iter().any(at_one) {
+            true => "the ends of a known distance are one point",
+            false => "a known distance is not above 0",
+        };
         return Err(Fault::new(
-            "a known distance is not above 0",
+            what,
             "give two different points and their distance",
         ));
     }

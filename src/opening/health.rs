@@ -50,7 +50,9 @@ impl HealthItem {
     /// What a reason for doubt speaks against; `None` where it is of one photo's view, and the flight is well.
     pub fn doubted_by(doubt: &Doubt) -> Option<Self> {
         match doubt {
-            Doubt::UnitUnknown | Doubt::UnitNotSystems { .. } => Some(Self::Unit),
+            Doubt::UnitUnknown | Doubt::UnitNotSystems { .. } | Doubt::StrangeSize { .. } => {
+                Some(Self::Unit)
+            }
             Doubt::FarFromSurface { .. } | Doubt::OtherHeights { .. } => {
                 Some(Self::CoordinateSystem)
             }
@@ -129,7 +131,7 @@ impl Remedy {
     pub fn against(doubt: &Doubt, can_georeference: bool) -> Option<Self> {
         match doubt {
             Doubt::UnitUnknown if !can_georeference => Some(Self::SetUnit),
-            Doubt::UnitNotSystems { .. } => Some(Self::SetUnit),
+            Doubt::UnitNotSystems { .. } | Doubt::StrangeSize { .. } => Some(Self::SetUnit),
             Doubt::UnitUnknown => Some(Self::Georeference),
             Doubt::OtherLength { .. } | Doubt::FlyingHeight { .. } | Doubt::LaserRange { .. } => {
                 can_georeference.then_some(Self::Georeference)

@@ -1,7 +1,7 @@
 //! The image files of a flight: where they are, and whether their cameras are for their size
 //! (contract, section 2, rule 7).
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use image::RgbImage;
@@ -10,8 +10,8 @@ use crate::camera::Camera;
 use crate::fault::{Fault, Lacking, first_names};
 use crate::files::{FileError, read_bytes};
 use crate::flight::{Doubt, Photo, PhotoFileState};
-use crate::formats::Reconstruction;
 use crate::formats::photos::photo_folder::{PhotoFolder, size_of_file};
+use crate::formats::{PhotosBelow, Reconstruction};
 use crate::picture::decode;
 
 /// The image file of a photo.
@@ -34,6 +34,27 @@ impl PhotoFile {
         let decoded = |bytes: Vec<u8>| decode(&bytes).map_err(|fault| FileError::new(path, fault));
         Some(read_bytes(path).and_then(decoded))
     }
+}
+
+/// The photos that lie beside those of a flight and have no pose in it, in words; `None` where there are none.
+pub fn without_pose(files: &[PhotoFile]) -> Option<String> {
+    let used: HashSet<&Path> = files.iter().filter_map(|of| of.path.as_deref()).collect();
+    let folders: BTreeSet<&Path> = used.iter().filter_map(|path| path.parent()).collect();
+    let mut names = Vec::new();
+    for folder in folders {
+        // A folder that cannot be read has nothing that anybody could miss.
+        let photos = PhotosBelow::read(folder).unwrap_or_default().photos;
+        let others = photos
+            .into_iter()
+            .filter(|(_, path)| !used.contains(path.as_path()));
+        names.extend(others.map(|(name, _)| name));
+    }
+    let photos = match names.len() {
+        0 => return None,
+        1 => "1 photo that lies beside these has no pose, and no scale".to_owned(),
+        count => format!("{count} photos that lie beside these have no pose, and no scale"),
+    };
+    Some(format!("{photos} ({})", first_names(&names)))
 }
 
 /// The file of each photo and what is known about it, in their order.

@@ -323,8 +323,15 @@ impl PhotoScale {
             ));
         }
         if let Some(names) = named(|o| matches!(o, CornerOutcome::Nowhere)) {
+            let up = |corner: &Corner| corner.direction.is_some_and(|way| way.z > 0.0);
+            let sky = match self.corners.iter().all(up) {
+                true => {
+                    "; all look above the horizon: look whether tilt or pitch has the other sign"
+                }
+                false => "",
+            };
             notes.push(format!(
-                "{names}: no point, the ray meets neither the surface nor the ground"
+                "{names}: no point, the ray meets neither the surface nor the ground{sky}"
             ));
         }
         for corner in &self.corners {

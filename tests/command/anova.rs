@@ -192,6 +192,24 @@ fn the_command_gives_one_table_and_one_a_size() {
     );
 }
 
+/// The line of docs/sizes.md: the bundled table's sieve has no trial, and each method's trials are analysed alone.
+#[test]
+fn one_method_of_the_bundled_table() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let table = root.join("assets/sample/distributions.csv");
+    let table = table.to_str().expect("a UTF-8 path");
+    let mut arguments = vec!["anova", table, "--group", "trial"];
+    arguments.extend(["--value", "percent_passing", "--by", "size_mm"]);
+    let error = crate::common::error_of(&arguments);
+    assert!(error.contains(":8: a value without its trial; "), "{error}");
+    assert!(error.contains("(--only COLUMN=TEXT)"), "{error}");
+    arguments.extend(["--only", "method=point cloud", "--format", "json"]);
+    let found = json(&arguments);
+    // 22, 23 and 23 lines.
+    assert_eq!(found["between"]["df"], 2);
+    assert_eq!(found["within"]["df"], 65);
+}
+
 /// The paper's Table II from its sums of squares.
 #[test]
 fn the_command_takes_published_sums() {

@@ -53,6 +53,27 @@ fn its_own_table_is_read_again() {
     );
 }
 
+/// The spheres took "1:30".
+#[test]
+fn how_times_of_two_parts_are_read_is_said() {
+    let output = crate::common::fragscale(&["effort", path(&written(WIDE))]);
+    let warnings = String::from_utf8_lossy(&output.stderr).into_owned();
+    let said =
+        "times of two parts are taken for minutes and seconds, the first is '1:30' on line 4";
+    assert_eq!(warnings.matches(said).count(), 1, "{warnings}");
+}
+
+#[test]
+fn percents_that_pass_are_no_times() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    for table in ["distributions.csv", "reference.csv"] {
+        let table = root.join("assets/sample").join(table);
+        let error = crate::common::error_of(&["effort", table.to_str().expect("a UTF-8 path")]);
+        let said = "it holds size distributions, not the times of steps; ";
+        assert!(error.contains(said), "{error}");
+    }
+}
+
 #[test]
 fn a_time_that_is_none_is_said_with_line_and_column() {
     let file = written("step,cloud\nflight,10\nset up,soon\n");

@@ -46,6 +46,7 @@ mod plan_surveys;
 mod psd_compare;
 mod real_data;
 mod reconstruct;
+mod said;
 mod scale_maps;
 mod scale_object;
 mod scale_pair;

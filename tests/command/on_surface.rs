@@ -79,6 +79,22 @@ fn a_profile_over_a_cloud_alone() {
     assert!((number(&face["crest"]["distance"]) - 10.0).abs() < 1e-9);
 }
 
+/// A line that begins on the bundled pile has a stone at its crest, with a side of 4 mm: no angle of repose. The pile's own slope
+/// behind the crest is one.
+#[test]
+fn a_stone_at_the_crest_is_no_slope() {
+    for to in ["12,5", "5,5"] {
+        let said = stdout_of(&["profile", text(&bundled()), "--from", "0,0", "--to", to]);
+        let line = |name: &str| {
+            let found = said.lines().find(|line| line.starts_with(name));
+            found.unwrap_or_else(|| panic!("{said}"))
+        };
+        let doubt = "a stone's side rather than a slope";
+        assert!(line("angle of repose before").contains(doubt), "{said}");
+        assert!(!line("angle of repose after").contains(doubt), "{said}");
+    }
+}
+
 #[test]
 fn volumes_over_a_level_the_rim_and_a_cloud() {
     let folder = tempfile::tempdir().expect("a folder");

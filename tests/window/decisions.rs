@@ -5,6 +5,7 @@ use std::fs;
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
+use egui_kittest::kittest::NodeT;
 use fragscale::app::Command;
 use fragscale::flight::{Along, DecisionKind, Verdict};
 
@@ -100,6 +101,37 @@ fn a_trusted_photo_is_left_out_by_its_box_and_by_its_button() {
     assert_eq!(desk.photos(), [name]);
 }
 
+/// Nobody accepts a scale that is none: not by a button, nor by the box or a key.
+#[test]
+fn a_photo_without_a_scale_is_not_accepted() {
+    let (mut desk, photo, name) = doubting();
+    let mut settings = desk.open().settings();
+    // Shorter than the cloud's points are apart: no photo shows enough of the surface.
+    settings.surface.max_edge = Some(0.001);
+    desk.harness.state_mut().apply(Command::Set(settings));
+    desk.settle();
+    assert_eq!(verdict(&desk, photo), Verdict::NoScale);
+    let is_grey = |desk: &Desk, role: Role, label: &str| {
+        let node = desk.node(role, label);
+        node.accesskit_node().is_disabled()
+    };
+    let export = format!("Export {name}");
+    assert!(is_grey(&desk, Role::Button, "Accept this photo"));
+    assert!(is_grey(&desk, Role::CheckBox, &export));
+    desk.press(Modifiers::NONE, Key::Space);
+    desk.press(Modifiers::NONE, Key::N);
+    assert!(is_grey(&desk, Role::Button, "Accept the reviewed photo"));
+    desk.press(Modifiers::NONE, Key::Enter);
+    let accept = Some((DecisionKind::Accepted, String::new()));
+    let app = desk.harness.state_mut();
+    app.apply(Command::Decide(photo, accept));
+    app.apply(Command::Choose(photo, true));
+    desk.settle();
+    assert!(desk.logged("A photo without a scale is not accepted"));
+    assert!(desk.open().settings().decisions.is_empty());
+    assert_eq!(desk.open().chosen_count(), 0);
+}
+
 /// The surface is another one after this change of its options.
 #[test]
 fn what_was_accepted_for_other_reasons_is_asked_again() {
@@ -115,8 +147,8 @@ fn what_was_accepted_for_other_reasons_is_asked_again() {
     };
     let before = doubts(&desk);
     let mut settings = desk.open().settings();
-    // Shorter than the cloud's points are apart: the surface is full of holes.
-    settings.surface.max_edge = Some(0.001);
+    // Shorter than the hole in the cloud is wide: two corners lie over no surface at all.
+    settings.surface.max_edge = Some(0.03);
     desk.harness.state_mut().apply(Command::Set(settings));
     desk.settle();
     assert_ne!(doubts(&desk), before);

@@ -6,6 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use fragscale::app::App;
 use fragscale::app::command::{Asking, Command, Tab};
+use fragscale::app::size_distributions::Page;
 use fragscale::flight::Verdict;
 
 use crate::desk::{Desk, flight};
@@ -221,4 +222,24 @@ fn a_screen_reader_is_told() {
         list.accesskit_node().description().as_deref(),
         Some("any verdict")
     );
+}
+
+/// The pages' keys count them from left to right.
+#[test]
+fn the_keys_of_the_pages_follow_their_order() {
+    let mut desk = small();
+    let mut before = f32::NEG_INFINITY;
+    for (key, page, name) in [
+        (Key::Num1, Page::Pile, "Pile"),
+        (Key::Num2, Page::Map, "Map"),
+        (Key::Num3, Page::Plan, "Plan"),
+        (Key::Num4, Page::Fragments, "Fragments"),
+        (Key::Num5, Page::SizeDistributions, "Size distributions"),
+    ] {
+        desk.press(Modifiers::COMMAND, key);
+        assert_eq!(desk.harness.state().state().page, page);
+        let left = desk.node(Role::Tab, name).rect().left();
+        assert!(left > before, "{name}");
+        before = left;
+    }
 }

@@ -277,7 +277,7 @@ fn no_number_is_cut_whatever_the_names_and_widths() {
         }
         // Coordinates beside the map, which takes long to make.
         if round % 4 == 0 {
-            desk.press(Modifiers::COMMAND, Key::Num3);
+            desk.press(Modifiers::COMMAND, Key::Num2);
             let map = desk.node(Role::Image, "Map").rect();
             let what = format!("round {round}, {size:?}, map {map}");
             found.extend(cut_numbers(&desk, &what));
@@ -360,6 +360,43 @@ fn names_are_cut_in_the_middle_and_whole_in_the_hover_text() {
     );
 }
 
+/// Names that are short enough are whole in a list of any width: thumbnails and verdicts cut none of them.
+#[test]
+fn short_names_are_whole_in_a_list_of_any_width() {
+    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
+    let mut desk = desk(&sample, [1500.0, 600.0], 1.0);
+    for step in 0..20_u8 {
+        let width = 180.0 + 8.0 * f32::from(step);
+        drag_edges(&mut desk, width, 330.0);
+        desk.settle();
+        let edge = desk.viewport().left();
+        let mut written = desk.written();
+        written.retain(|written| written.place.right() < edge && written.text.ends_with("jpg"));
+        assert!(written.len() > 3, "{width}");
+        let cut = written.iter().find(|written| written.text.contains('…'));
+        let cut = cut.map(|written| &written.text);
+        assert!(cut.is_none(), "{width}: {cut:?}");
+    }
+}
+
+/// A long line of the log is read to its end, in as many rows as it needs.
+#[test]
+fn lines_of_the_log_are_broken_and_not_cut() {
+    let folder = copy("tests/windrow");
+    let mut desk = desk(folder.path(), [900.0, 600.0], 1.0);
+    let long = "many words that are read ".repeat(12) + "to their end";
+    let app = desk.harness.state_mut();
+    app.apply(Command::Report(long.clone()));
+    app.apply(Command::DismissNotice);
+    desk.press(Modifiers::COMMAND, Key::L);
+    let line = format!("✖ {long}");
+    let written = desk.written();
+    let line = written.iter().find(|written| written.text == line);
+    let line = line.expect("the last line is in sight");
+    assert!(line.rows.len() > 1, "{:?}", line.rows);
+    assert!(desk.says(&long));
+}
+
 /// In a list of photos of any width: at rest no column is half in sight, and every number of a row is read
 /// whole by scrolling, under a bar that says so.
 #[test]
@@ -433,7 +470,7 @@ fn no_number_is_cut_beside_the_curves() {
             .allow_missing_glyphs()
             .build_eframe(|context| App::new(context, Vec::new()));
         let mut desk = Desk { harness };
-        desk.press(Modifiers::COMMAND, Key::Num2);
+        desk.press(Modifiers::COMMAND, Key::Num5);
         let paths = vec![path];
         desk.harness.state_mut().apply(Command::Drop(paths));
         desk.settle();

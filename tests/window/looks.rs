@@ -88,7 +88,7 @@ fn planning() {
         theme: Theme::Dark,
     };
     sample(&screen, "window_planning", |desk| {
-        desk.press(Modifiers::COMMAND, Key::Num4);
+        desk.press(Modifiers::COMMAND, Key::Num3);
         desk.fill("Clearance", "0.1");
         desk.click(Role::Button, "Set take-off");
         let place = desk.viewport();

@@ -13,7 +13,7 @@ use crate::desk::{Desk, Screen, flight};
 
 fn on_map() -> Desk {
     let mut desk = Desk::new(Some(&flight("assets/sample")));
-    desk.press(Modifiers::COMMAND, Key::Num3);
+    desk.press(Modifiers::COMMAND, Key::Num2);
     desk
 }
 
@@ -276,7 +276,7 @@ fn it_is_drawn_light_and_dark() {
             theme,
         };
         let mut desk = Desk::drawn(Some(&flight("assets/sample")), &screen);
-        desk.press(Modifiers::COMMAND, Key::Num3);
+        desk.press(Modifiers::COMMAND, Key::Num2);
         desk.harness.hover_at(place(&desk).center());
         desk.settle();
         let picture = desk.harness.render().expect("a picture");
@@ -317,7 +317,7 @@ fn a_map_that_is_larger_than_a_texture_is_drawn() {
     desk.settle();
     desk.press(Modifiers::NONE, Key::F2);
     desk.press(Modifiers::NONE, Key::F3);
-    desk.press(Modifiers::COMMAND, Key::Num3);
+    desk.press(Modifiers::COMMAND, Key::Num2);
     let drawn = desk.open().map.drawn.as_ref().expect("a part");
     let size = place(&desk).size();
     assert!(f64::from(size.x) * 2.0 > 2048.0, "{size:?}");

@@ -252,7 +252,7 @@ fn files_that_are_written_anew_are_said_and_read_again() {
     assert_eq!(said(&desk), 2);
     let sheet = fs::read_to_string(folder.path().join("export/scales.html")).expect("a sheet");
     assert!(sheet.contains("pile.ply was changed since it was read"));
-    desk.press(Modifiers::COMMAND, Key::Num4);
+    desk.press(Modifiers::COMMAND, Key::Num3);
     desk.press(Modifiers::NONE, Key::F5);
     desk.settle();
     assert_eq!(

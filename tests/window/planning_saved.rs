@@ -15,7 +15,7 @@ fn a_plan_is_saved_with_its_flight() {
     let flight = pile(folder.path());
     let before = fs::read_to_string(&flight).expect("a flight");
     let mut desk = Desk::new(Some(&flight));
-    desk.press(Modifiers::COMMAND, Key::Num4);
+    desk.press(Modifiers::COMMAND, Key::Num3);
     assert!(!desk.open().is_changed(), "nobody asked for anything");
     let mut desk = planned(&flight);
     desk.fill(
@@ -43,7 +43,7 @@ fn a_plan_is_saved_with_its_flight() {
     // Another look at it.
     let mut desk = Desk::new(Some(&flight));
     assert!(!desk.open().is_changed());
-    desk.press(Modifiers::COMMAND, Key::Num4);
+    desk.press(Modifiers::COMMAND, Key::Num3);
     assert_eq!(desk.open().planning.now(), Some(&asked));
     assert_eq!(count(&desk), photos);
     assert!(!desk.open().is_changed());
@@ -62,7 +62,7 @@ fn a_plan_is_saved_with_its_flight() {
     assert_ne!(other, with_edit);
     fs::write(&flight, &other).expect("a flight");
     let mut desk = Desk::new(Some(&flight));
-    desk.press(Modifiers::COMMAND, Key::Num4);
+    desk.press(Modifiers::COMMAND, Key::Num3);
     assert_eq!(count(&desk), photos + 1, "nothing is left out");
     assert!(desk.logged("is not taken: this plan has another photo of that name, or none"));
     // By hand little is needed.
@@ -73,7 +73,7 @@ fn a_plan_is_saved_with_its_flight() {
     )
     .expect("a flight");
     let mut desk = Desk::new(Some(&flight));
-    desk.press(Modifiers::COMMAND, Key::Num4);
+    desk.press(Modifiers::COMMAND, Key::Num3);
     let now = desk.open().planning.now().expect("asked");
     assert_eq!((now.clearance, now.edits.len()), (6.0, 0));
     assert!(count(&desk) > 0);
@@ -100,7 +100,7 @@ fn a_plan_over_a_cloud_alone_is_saved_with_the_cloud() {
     desk.click(Role::Tab, "Flight");
     desk.click(Role::ComboBox, "Unit of the world's coordinates");
     desk.click(Role::Button, "m");
-    desk.press(Modifiers::COMMAND, Key::Num4);
+    desk.press(Modifiers::COMMAND, Key::Num3);
     desk.fill("Take-off", "450030,5400040");
     let asked = desk.open().planning.now().expect("asked").clone();
     desk.press(Modifiers::COMMAND, Key::W);
@@ -120,7 +120,7 @@ fn a_plan_over_a_cloud_alone_is_saved_with_the_cloud() {
     let mut desk = Desk::new(Some(&file));
     assert!(desk.open().files.origin.is_surface_alone());
     assert!(!desk.open().is_changed());
-    desk.press(Modifiers::COMMAND, Key::Num4);
+    desk.press(Modifiers::COMMAND, Key::Num3);
     assert_eq!(desk.open().planning.now(), Some(&asked));
     assert!(count(&desk) > 0);
     desk.fill("Take-off", "450031,5400040");
@@ -142,14 +142,14 @@ fn a_plan_over_a_cloud_alone_is_asked_about() {
     desk.click(Role::Tab, "Flight");
     desk.click(Role::ComboBox, "Unit of the world's coordinates");
     desk.click(Role::Button, "m");
-    desk.press(Modifiers::COMMAND, Key::Num4);
+    desk.press(Modifiers::COMMAND, Key::Num3);
     desk.press(Modifiers::COMMAND, Key::W);
     assert!(desk.harness.state().state().open.is_none(), "it is usual");
     let mut desk = Desk::new(Some(&cloud));
     desk.click(Role::Tab, "Flight");
     desk.click(Role::ComboBox, "Unit of the world's coordinates");
     desk.click(Role::Button, "m");
-    desk.press(Modifiers::COMMAND, Key::Num4);
+    desk.press(Modifiers::COMMAND, Key::Num3);
     desk.fill("Take-off", "450030,5400040");
     desk.press(Modifiers::COMMAND, Key::W);
     assert!(desk.says("The flight plan is in no file"));

@@ -5,7 +5,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, Theme};
 use fragscale::app::Command;
 use fragscale::app::command::Tab;
-use fragscale::flight::{Along, DecisionKind, Doubt, InView, Limits, OnPhoto};
+use fragscale::flight::{Along, DecisionKind, Doubt, InView, Limits, OnPhoto, Verdict};
 
 use crate::desk::{Desk, Screen, flight};
 
@@ -105,6 +105,18 @@ fn doubtful_photos_are_reviewed_with_keys_alone() {
     desk.press(NONE, Key::Delete);
     desk.press(NONE, Key::Enter);
     assert_eq!(desk.open().settings(), before);
+}
+
+/// A trusted photo that was left out counts in the review as in the tool bar.
+#[test]
+fn what_is_left_out_counts_alike_in_tool_bar_and_review() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.click(Role::Row, "Photo IMG_0001.jpg");
+    desk.press(NONE, Key::Space);
+    desk.press(NONE, Key::N);
+    assert_eq!(desk.open().review.count_of(Verdict::LeftOut), 1);
+    let said = "1 to decide, 0 accepted, 1 left out";
+    assert!(desk.says(said), "{:?}", desk.texts());
 }
 
 /// The corner that is meant is in the middle of the view, and near: the rest of the pile is not.

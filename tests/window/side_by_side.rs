@@ -104,7 +104,7 @@ fn a_typed_area_is_saved() {
     let folder = sample();
     let file = folder.path().join("flight.toml");
     let mut desk = Desk::new(Some(&file));
-    desk.press(Modifiers::COMMAND, Key::Num4);
+    desk.press(Modifiers::COMMAND, Key::Num3);
     type_into(&mut desk, "Corners of the area", "0,0;0.5,0;0.5,0.4;0,0.4");
     desk.press(Modifiers::COMMAND, Key::S);
     let text = fs::read_to_string(&file).expect("a flight");
@@ -139,7 +139,7 @@ fn outlines_stay_with_their_photos() {
     let folder = sample();
     let file = folder.path().join("flight.toml");
     let mut desk = Desk::new(Some(&file));
-    desk.press(Modifiers::COMMAND, Key::Num5);
+    desk.press(Modifiers::COMMAND, Key::Num4);
     desk.click(Role::Button, "Outline this photo");
     desk.press(Modifiers::NONE, Key::ArrowDown);
     desk.click(Role::Button, "Outline this photo");
@@ -151,7 +151,7 @@ fn outlines_stay_with_their_photos() {
     assert!(outlined(&desk, selected).is_some(), "read again");
 
     let mut desk = Desk::new(Some(&file));
-    desk.press(Modifiers::COMMAND, Key::Num5);
+    desk.press(Modifiers::COMMAND, Key::Num4);
     for key in [
         Key::ArrowDown,
         Key::ArrowDown,
@@ -208,7 +208,7 @@ fn outlines_stay_with_their_photos() {
 fn over_another_surface_all_is_measured_anew() {
     let folder = sample();
     let mut desk = Desk::new(Some(&folder.path().join("flight.toml")));
-    desk.press(Modifiers::COMMAND, Key::Num5);
+    desk.press(Modifiers::COMMAND, Key::Num4);
     desk.click(Role::Button, "Outline this photo");
     let whole = |desk: &Desk| {
         let measured = outlined(desk, 0).and_then(PhotoOutlines::measured);
@@ -238,7 +238,7 @@ fn a_saved_plan_keeps_its_lengths_in_another_unit() {
         .expect("written");
         let mut desk = Desk::new(Some(&file));
         if is_seen {
-            desk.press(Modifiers::COMMAND, Key::Num4);
+            desk.press(Modifiers::COMMAND, Key::Num3);
             desk.press(Modifiers::COMMAND, Key::Num1);
         }
         let mut settings = desk.open().settings();
@@ -286,7 +286,7 @@ fn nothing_is_changed_while_another_flight_is_read() {
     let folder = sample();
     let other = sample();
     let mut desk = Desk::new(Some(&folder.path().join("flight.toml")));
-    desk.press(Modifiers::COMMAND, Key::Num4);
+    desk.press(Modifiers::COMMAND, Key::Num3);
     let asked = desk.open().planning.now().expect("asked").clone();
     let app = desk.harness.state_mut();
     app.apply(Command::Open(other.path().to_owned()));
@@ -311,7 +311,7 @@ fn nothing_is_changed_while_another_flight_is_read() {
 fn another_surface_keeps_what_is_asked_and_not_what_was_made() {
     let folder = sample();
     let mut desk = Desk::new(Some(&folder.path().join("flight.toml")));
-    desk.press(Modifiers::COMMAND, Key::Num4);
+    desk.press(Modifiers::COMMAND, Key::Num3);
     desk.settle();
     let surface = |desk: &Desk| {
         desk.open()

@@ -108,7 +108,7 @@ fn the_page_opens_without_a_flight_and_with_one() {
     assert!(desk.says("What Split-Desktop or a sieve gave"));
     desk.click(Role::Tab, "Pile");
     assert!(desk.shows(Role::Button, "Open the sample flight"));
-    desk.press(Modifiers::COMMAND, Key::Num2);
+    desk.press(Modifiers::COMMAND, Key::Num5);
     assert!(desk.says("What Split-Desktop or a sieve gave"));
 
     let mut desk = Desk::new(Some(&flight("assets/sample")));
@@ -289,7 +289,7 @@ fn repeatability_has_the_numbers_of_scipy() {
 #[test]
 fn a_table_is_pasted() {
     let mut desk = Desk::new(None);
-    desk.press(Modifiers::COMMAND, Key::Num2);
+    desk.press(Modifiers::COMMAND, Key::Num5);
     desk.click(Role::Button, "Paste table…");
     choose(&mut desk, "Unit of the table", "in");
     paste(&mut desk, "size\tpassing\n1\t10\n2\t35\n4\t80\n8\t100\n");
@@ -322,7 +322,7 @@ fn a_table_is_pasted_onto_the_page() {
     desk.harness.event(Event::Paste(table.to_owned()));
     desk.settle();
     assert!(!desk.shows(Role::Button, "Add table"));
-    desk.press(Modifiers::COMMAND, Key::Num2);
+    desk.press(Modifiers::COMMAND, Key::Num5);
     desk.harness.event(Event::Paste(table.to_owned()));
     desk.settle();
     assert_eq!(
@@ -353,7 +353,7 @@ fn the_field_for_a_table_has_the_keys() {
 #[test]
 fn a_bad_table_is_refused_in_one_line() {
     let mut desk = Desk::new(None);
-    desk.press(Modifiers::COMMAND, Key::Num2);
+    desk.press(Modifiers::COMMAND, Key::Num5);
     desk.click(Role::Button, "Paste table…");
     paste(&mut desk, "size\tpassing\n1\t10\n2\t35\n4\t180\n");
     desk.click(Role::Button, "Add table");
@@ -377,7 +377,7 @@ fn a_bad_table_is_refused_in_one_line() {
 fn pasted_tables_are_asked_about_and_saved() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut desk = Desk::new(None);
-    desk.press(Modifiers::COMMAND, Key::Num2);
+    desk.press(Modifiers::COMMAND, Key::Num5);
     desk.click(Role::Button, "Paste…");
     paste(&mut desk, "size_cm\tpassing\n1\t10\n2\t35\n4\t80\n8\t100\n");
     desk.click(Role::Button, "Add table");
@@ -403,7 +403,7 @@ fn pasted_tables_are_asked_about_and_saved() {
     assert!(quits(&desk));
     // Pasted once more, and thrown away.
     let mut desk = Desk::new(None);
-    desk.press(Modifiers::COMMAND, Key::Num2);
+    desk.press(Modifiers::COMMAND, Key::Num5);
     desk.click(Role::Button, "Paste…");
     paste(&mut desk, "size\tpassing\n1\t10\n2\t35\n");
     desk.click(Role::Button, "Add table");

@@ -4,6 +4,7 @@ use egui::{Key, Modifiers};
 
 use super::{Action, SHIFT, beside_photos, keys, on_pile, on_plan, with_flight};
 use crate::command::{Choice, Command};
+use crate::open_flight::reviewing::no_scale;
 use crate::open_flight::survey::{Drawn, SurveyStep};
 use crate::size_distributions::{DistributionCommand, Page};
 use crate::state::history::History;
@@ -76,7 +77,11 @@ actions! {
         command: |state| {
             let open = state.open.as_ref()?;
             let photo = open.selected?;
-            let goes_along = open.row(photo)?.goes_along();
+            let row = open.row(photo)?;
+            let goes_along = row.goes_along();
+            if !goes_along && no_scale(&row.line.photo).is_some() {
+                return None;
+            }
             beside_photos(state, Command::Choose(photo, !goes_along))
         },
     }

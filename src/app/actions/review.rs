@@ -15,8 +15,9 @@ fn reviewed(state: &State, step: ReviewStep) -> Option<Command> {
 
 /// Accepts the photo that is reviewed, where one is: what Enter does there.
 pub(super) fn accept(state: &State) -> Option<Command> {
-    let (_, photo) = state.reviewed_flight()?.selected_review()?;
-    let can = photo.is_doubtful() && photo.is_looked_at;
+    let open = state.reviewed_flight()?;
+    let (_, photo) = open.selected_review()?;
+    let can = photo.is_doubtful() && open.why_not_accepted(&photo).is_none();
     can.then(|| reviewed(state, ReviewStep::Accept)).flatten()
 }
 

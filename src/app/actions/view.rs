@@ -1,4 +1,4 @@
-//! Pages and views.
+//! Pages and views. The pages' keys count them from left to right, as they stand in the tool bar.
 
 use egui::{Key, Modifiers};
 
@@ -44,25 +44,25 @@ actions! {
     MAP {
         label: "Map",
         hover: "Show the flight as a plan: hillshade, footprints, grid, scale bar",
-        shortcut: keys(Modifiers::COMMAND, Key::Num3),
+        shortcut: keys(Modifiers::COMMAND, Key::Num2),
         command: |state| with_flight(state, Command::Page(Page::Map)),
     }
     PLAN {
         label: "Flight plan",
         hover: "Plan photos of this surface: where from, what each will show, and the mission for the drone",
-        shortcut: keys(Modifiers::COMMAND, Key::Num4),
+        shortcut: keys(Modifiers::COMMAND, Key::Num3),
         command: |state| with_flight(state, Command::Page(Page::Plan)),
     }
     FRAGMENTS {
         label: "Fragments",
         hover: "Outline the fragments of the selected photo, correct them, and measure them where they lie",
-        shortcut: keys(Modifiers::COMMAND, Key::Num5),
+        shortcut: keys(Modifiers::COMMAND, Key::Num4),
         command: |state| with_flight(state, Command::Page(Page::Fragments)),
     }
     SIZE_DISTRIBUTIONS {
         label: "Size distributions",
         hover: "Show size distributions: fits, the reference, repeatability",
-        shortcut: keys(Modifiers::COMMAND, Key::Num2),
+        shortcut: keys(Modifiers::COMMAND, Key::Num5),
         command: |_| Some(Command::Page(Page::SizeDistributions)),
     }
     TOP {

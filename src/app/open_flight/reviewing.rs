@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::flight::{DecisionKind, Doubt, InView, PhotoReview, Sight};
+use crate::flight::{Doubt, InView, PhotoReview, Sight, Verdict};
 use crate::open_flight::OpenFlight;
 use crate::render::PhotoZoom;
 
@@ -30,10 +30,20 @@ pub struct ReviewProgress {
     pub at: Option<usize>,
     /// How many of them wait for a decision.
     pub waiting: usize,
-    /// How many of them were accepted for the reasons of now.
+    /// How many photos are accepted for the reasons of now, as the tool bar counts them.
     pub accepted: usize,
-    /// How many of them are left out.
+    /// How many are left out, doubtful or not, as the tool bar counts them.
     pub left_out: usize,
+}
+
+/// Why nothing can be decided for the reasons of now: not all of them are known.
+pub(crate) const STILL_LOOKING: &str =
+    "Footprints and scale fields are still being looked at; decide when they are there";
+
+/// Why nobody takes this photo along, where it has no scale: what its box asks, and all that accepts it.
+pub(crate) fn no_scale(photo: &PhotoReview<'_>) -> Option<&'static str> {
+    let has_none = photo.own_verdict == Verdict::NoScale;
+    has_none.then_some("A photo without a scale is not accepted: there is none to take along")
 }
 
 impl OpenFlight {
@@ -43,28 +53,27 @@ impl OpenFlight {
         Some((photo, self.review.photo(photo)?))
     }
 
+    /// Why nobody can accept this photo now; `None` where somebody can. Buttons and keys ask here.
+    pub fn why_not_accepted(&self, photo: &PhotoReview<'_>) -> Option<&'static str> {
+        match photo.is_looked_at && self.is_computed() {
+            true => no_scale(photo),
+            false => Some(STILL_LOOKING),
+        }
+    }
+
     /// How far the review is.
     pub fn review_progress(&self) -> ReviewProgress {
         let doubtful = &self.table.doubtful;
-        let photos = || {
-            doubtful
-                .iter()
-                .filter_map(|&photo| self.review.photo(photo))
-        };
+        let photos = doubtful
+            .iter()
+            .filter_map(|&photo| self.review.photo(photo));
         let place = |photo| doubtful.iter().position(|&at| at == photo);
-        let waiting = photos().filter(PhotoReview::waits_for_decision).count();
-        let is_left_out = |photo: &PhotoReview<'_>| {
-            photo
-                .decision
-                .is_some_and(|d| d.kind == DecisionKind::LeftOut)
-        };
-        let left_out = photos().filter(is_left_out).count();
         ReviewProgress {
             doubtful: doubtful.len(),
             at: self.selected.and_then(place).map(|place| place + 1),
-            waiting,
-            accepted: doubtful.len().saturating_sub(waiting + left_out),
-            left_out,
+            waiting: photos.filter(PhotoReview::waits_for_decision).count(),
+            accepted: self.review.count_of(Verdict::Accepted),
+            left_out: self.review.count_of(Verdict::LeftOut),
         }
     }
 

@@ -22,21 +22,38 @@ pub fn log_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) 
             commands.push(Command::ToggleLog);
         }
     });
-    let height = ui.text_style_height(&egui::TextStyle::Body);
     egui::ScrollArea::vertical()
         .auto_shrink(false)
         .stick_to_bottom(true)
-        .show_rows(ui, height, state.log.len(), |ui, rows| {
-            for line in &state.log[rows] {
-                let color = match line.severity {
-                    Severity::Note => ui.visuals().text_color(),
-                    Severity::Warning => ui.visuals().warn_fg_color,
-                    Severity::Error => ui.visuals().error_fg_color,
-                };
-                let text = format!("{} {}", sign(line), line.text);
-                names::styled(ui, &text, egui::TextStyle::Body, |text| text.color(color));
-            }
-        });
+        .show_viewport(ui, |ui, sight| lines(state, sight, ui));
+}
+
+/// Every line in as many rows as it needs; only those in sight are drawn. `sight` counts from the top of the first line.
+fn lines(state: &State, sight: egui::Rect, ui: &mut egui::Ui) {
+    let first = ui.max_rect().top();
+    for line in &state.log {
+        let text = format!("{} {}", sign(line), line.text);
+        let shown = egui::RichText::new(names::unbroken(&text)).color(color(line, ui.visuals()));
+        // egui remembers how it broke it.
+        let mode = Some(egui::TextWrapMode::Wrap);
+        let shown = egui::WidgetText::from(shown);
+        let shown = shown.into_galley(ui, mode, ui.available_width(), egui::TextStyle::Body);
+        let top = ui.cursor().top() - first;
+        if top > sight.bottom() || top + shown.size().y < sight.top() {
+            ui.allocate_space(shown.size());
+            continue;
+        }
+        let label = ui.add(egui::Label::new(shown).selectable(false));
+        label.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));
+    }
+}
+
+fn color(line: &LogLine, visuals: &egui::Visuals) -> egui::Color32 {
+    match line.severity {
+        Severity::Note => visuals.text_color(),
+        Severity::Warning => visuals.warn_fg_color,
+        Severity::Error => visuals.error_fg_color,
+    }
 }
 
 fn sign(line: &LogLine) -> &'static str {

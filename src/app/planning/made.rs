@@ -8,6 +8,9 @@ use crate::render::{PlannedLine, plan_photos};
 use crate::surface::Surface;
 use crate::survey::Polygon;
 
+/// What is said of a plan that nobody takes off for.
+const NO_TAKE_OFF: &str = "Set the take-off to see the way, its time, and to write a mission.";
+
 /// A plan with what was asked for, and what the window needs of it.
 pub struct MadePlan {
     /// What it is of.
@@ -52,6 +55,14 @@ impl MadePlan {
                 self.not_taken.join(", ")
             )
         })
+    }
+
+    /// Why there is no mission to write; `None` where there is one.
+    pub fn no_mission(&self) -> Option<&str> {
+        match &self.no_way {
+            Some(why) => Some(why.as_str()),
+            None => self.ways.is_empty().then_some(NO_TAKE_OFF),
+        }
     }
 
     /// All of it as lines of the picture.

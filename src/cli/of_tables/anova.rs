@@ -26,6 +26,10 @@ pub(in crate::cli) struct AnovaArguments {
     /// Add a table for each value of this column: the size.
     #[arg(long, value_name = "COLUMN", requires = "file")]
     by: Option<String>,
+    /// Take only the lines that have this text in this column: one method of several. Trials of
+    /// different methods are not of one group.
+    #[arg(long, value_name = "COLUMN=TEXT", value_parser = only, requires = "file")]
+    only: Option<(String, String)>,
     /// Published degrees of freedom and sum of squares between the groups, instead of a file.
     #[arg(
         long,
@@ -51,6 +55,15 @@ fn published(text: &str) -> Result<(usize, f64), String> {
     let read = parts
         .and_then(|(degrees, sum)| Some((degrees.trim().parse().ok()?, sum.trim().parse().ok()?)));
     read.ok_or_else(|| "give degrees of freedom and sum of squares, such as 9,1.9".to_owned())
+}
+
+/// "method=point cloud"
+fn only(text: &str) -> Result<(String, String), String> {
+    let parts = text.split_once('=');
+    let named = parts.filter(|(column, text)| !column.trim().is_empty() && !text.trim().is_empty());
+    named
+        .map(|(column, text)| (column.trim().to_owned(), text.trim().to_owned()))
+        .ok_or_else(|| "give a column and its text, such as 'method=point cloud'".to_owned())
 }
 
 pub(in crate::cli) fn anova(arguments: &AnovaArguments) -> Result<Answer, String> {
@@ -80,7 +93,9 @@ fn report(arguments: &AnovaArguments) -> Result<(AnovaReport, Vec<String>), Stri
         }
     };
     let by = arguments.by.as_deref();
-    let found = read_grouped_values(path, group, value, by).map_err(|e| e.to_string())?;
+    let only = arguments.only.as_ref();
+    let only = only.map(|(column, text)| (column.as_str(), text.as_str()));
+    let found = read_grouped_values(path, group, value, by, only).map_err(|e| e.to_string())?;
     let pooled = Anova::of_groups(&found.all.values, level)
         .map_err(|fault| FileError::new(path, fault).to_string())?;
     let tables = found.by.into_iter();

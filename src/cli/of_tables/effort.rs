@@ -13,7 +13,7 @@ use crate::formats::read_effort_table;
 pub(in crate::cli) struct EffortArguments {
     /// A table as CSV: columns step, method or trial, and time; or the steps first and a column of
     /// times for each method or trial. Times are in minutes (others as "90 s", "0:01:30" or by the
-    /// column's name, "time_s").
+    /// column's name, "time_s"); "1:30" is minutes and seconds, in a column "time (h)" hours and minutes.
     file: PathBuf,
     #[command(flatten)]
     answer: AnswerArguments,

@@ -64,7 +64,7 @@ pub fn profile_table(report: &ProfileReport<'_>) -> String {
             _ => ["toe after", "angle of repose after", "crest to toe after"],
         };
         rows.push((toe, place(&face.toe)));
-        rows.push((angle, repose(face, profile.length, &unit)));
+        rows.push((angle, repose(face, profile, &unit)));
         let height = coordinate(face.height());
         rows.push((
             overall,
@@ -85,23 +85,29 @@ pub fn profile_table(report: &ProfileReport<'_>) -> String {
 /// A stretch of less of the line is a stone's side, no slope of the pile.
 const LEAST_STRETCH: f64 = 0.05;
 
-/// A face that is less gentle than its steepest stretch, degrees, is as steep all over: a wall.
+/// A face that is less gentle than its steepest stretch, degrees, is as steep all over: a wall, where it is high.
 const WALL: f64 = 10.0;
 
-/// Whether the angle of repose of a face is that of a stone's side, on a profile of that length: of a short stretch that is much
-/// steeper than the face.
-pub fn is_of_a_stone(face: &Face, length: f64) -> bool {
+/// The part of the profile's relief that a wall falls by. The side of a stone at the crest is as steep all over, too, and ends above
+/// the stones below it.
+const WALLS_FALL: f64 = 0.5;
+
+/// Whether the angle of repose of a face is that of a stone's side: of a short stretch of the profile that is much steeper than the
+/// face, or of a face that is low.
+pub fn is_of_a_stone(face: &Face, profile: &Profile) -> bool {
     let stretch = |[from, to]: [f64; 2]| (to - from).abs();
-    let is_wall = (face.repose).is_some_and(|repose| repose - face.overall < WALL);
-    let is_short = |fitted| stretch(fitted) < LEAST_STRETCH * length;
+    let relief = (profile.lowest()).map_or(0.0, |lowest| face.crest.point.z - lowest.point.z);
+    let is_steep_all_over = (face.repose).is_some_and(|repose| repose - face.overall < WALL);
+    let is_wall = is_steep_all_over && face.height() >= WALLS_FALL * relief;
+    let is_short = |fitted| stretch(fitted) < LEAST_STRETCH * profile.length;
     face.fitted.is_some_and(is_short) && !is_wall
 }
 
-fn repose(face: &Face, length: f64, unit: &str) -> String {
+fn repose(face: &Face, profile: &Profile, unit: &str) -> String {
     match (face.repose, face.fitted) {
         (Some(repose), Some([from, to])) => {
             let [from, to] = [from, to].map(coordinate);
-            let doubt = match is_of_a_stone(face, length) {
+            let doubt = match is_of_a_stone(face, profile) {
                 true => ": a stone's side rather than a slope, the stretch is so short",
                 false => "",
             };
@@ -169,4 +175,50 @@ pub fn profile_json(report: &ProfileReport<'_>) -> Result<String, serde_json::Er
         "parts": runs,
     });
     Ok(serde_json::to_string_pretty(&value)? + "\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    /// The profile over a line of 20 through these places: distance, height.
+    fn through(places: &[[f64; 2]]) -> Profile {
+        let point = |&[distance, height]: &[f64; 2]| ProfilePoint {
+            distance,
+            point: DVec3::new(distance, 0.0, height),
+        };
+        Profile {
+            runs: vec![places.iter().map(point).collect()],
+            length: 20.0,
+            bridged: 0.0,
+        }
+    }
+
+    /// Both are as steep all over: a wall from the floor to the crest, and the side of a stone at the crest.
+    #[test]
+    fn a_wall_is_high_and_a_stone_is_not() {
+        let wall = through(&[
+            [0.0, 0.0],
+            [5.0, 0.0],
+            [5.01, 4.0],
+            [12.0, 0.0],
+            [20.0, 0.0],
+        ]);
+        let stone = through(&[
+            [0.0, 3.6],
+            [5.0, 3.4],
+            [5.01, 4.0],
+            [12.0, 0.0],
+            [20.0, 0.0],
+        ]);
+        for (profile, is_stone) in [(&wall, false), (&stone, true)] {
+            let [Some(before), Some(after)] = profile.faces() else {
+                panic!("two faces");
+            };
+            assert!(before.repose.is_some_and(|repose| repose > 85.0));
+            assert_eq!(is_of_a_stone(&before, profile), is_stone);
+            assert!(!is_of_a_stone(&after, profile));
+        }
+    }
 }

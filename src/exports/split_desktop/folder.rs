@@ -280,12 +280,13 @@ impl<'a> ExportFolder<'a> {
     }
 
     /// Takes away the files of earlier exports that this one does not have, so that the pictures are
-    /// those of the sheet. A file that was changed since is left where it is.
+    /// those of the sheet; returns their names. A file that was changed since is left where it is.
     pub(super) fn remove_others(
         &mut self,
         planned: &[String],
         progress: &Progress,
-    ) -> Result<(), FileError> {
+    ) -> Result<Vec<String>, FileError> {
+        let mut removed = Vec::new();
         let names: Vec<String> = self.list.files.keys().cloned().collect();
         for name in names.into_iter().filter(|name| !planned.contains(name)) {
             // A list from elsewhere could name anything; ours names no file outside.
@@ -298,13 +299,15 @@ impl<'a> ExportFolder<'a> {
                     let what = format!("the file of an earlier export cannot be removed ({e})");
                     FileError::new(&path, Fault::new(what, "remove it yourself"))
                 })?;
+                removed.push(name.clone());
             }
             self.list.files.remove(&name);
         }
         for entry in self.list.files.values_mut() {
             entry.replaces = None;
         }
-        self.write_list()
+        self.write_list()?;
+        Ok(removed)
     }
 
     fn write_list(&self) -> Result<(), FileError> {

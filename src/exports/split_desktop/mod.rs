@@ -49,7 +49,7 @@ use self::objects::PhotoObject;
 use self::photo_names::PhotoNames;
 use self::pictures::PictureSource;
 use self::whose::FlightOfExport;
-use crate::fault::Fault;
+use crate::fault::{Fault, first_names};
 use crate::files::{FileError, Inputs, sha256_of_file};
 use crate::flight::{FlightSettings, Review};
 use crate::jobs::Progress;
@@ -245,7 +245,14 @@ pub fn export_for_split_desktop(
         .filter_map(|&index| pictures[index].as_ref().ok());
     let mut kept: Vec<String> = files.into_iter().map(|(name, _)| name).collect();
     kept.extend(of_photos.flat_map(PhotoNames::all));
-    folder.remove_others(&kept, progress)?;
+    let removed = folder.remove_others(&kept, progress)?;
+    if !removed.is_empty() {
+        summary.warnings.push(format!(
+            "files of the earlier export that this one does not have were taken away: {} ({})",
+            removed.len(),
+            first_names(&removed)
+        ));
+    }
     progress.advance(1, 1).map_err(at_dir)?;
     Ok(summary)
 }

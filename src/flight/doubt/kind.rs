@@ -4,7 +4,7 @@
 use super::Doubt;
 
 /// All words.
-const KINDS: [&str; 47] = [
+const KINDS: [&str; 48] = [
     "no-scale",
     "off-surface",
     "no-point",
@@ -21,6 +21,7 @@ const KINDS: [&str; 47] = [
     "wall",
     "unit-unknown",
     "unit-not-systems",
+    "strange-size",
     "small-angles",
     "no-rotation",
     "rounded-points",
@@ -86,6 +87,7 @@ impl Doubt {
             Self::Wall { .. } => "wall",
             Self::UnitUnknown => "unit-unknown",
             Self::UnitNotSystems { .. } => "unit-not-systems",
+            Self::StrangeSize { .. } => "strange-size",
             Self::SmallAngles { .. } => "small-angles",
             Self::NoRotation { .. } => "no-rotation",
             Self::RoundedPoints { .. } => "rounded-points",

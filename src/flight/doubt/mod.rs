@@ -102,6 +102,11 @@ pub enum Doubt {
         /// What the system counts in, in words.
         counted: String,
     },
+    /// The photo shows so much from side to side as none of a blast does: the world counts in another unit than is said of it.
+    StrangeSize {
+        /// Metres, as the unit is said.
+        across: f64,
+    },
     /// All angles of the poses are so small that they may be radians.
     SmallAngles {
         /// The largest, without its sign, as the file has it.

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::Doubt;
-use crate::numbers::{apart, to_digits};
+use crate::numbers::{apart, significant_digits, to_digits};
 use crate::scale::{CornerName, LEAST_COVERED};
 use crate::units::in_words;
 
@@ -147,6 +147,17 @@ impl fmt::Display for Doubt {
                 f,
                 "the world is said to count in {unit}, and its coordinate system ({system}) counts in {counted}: scales are off by as much"
             ),
+            Self::StrangeSize { across } => {
+                let (number, unit) = match *across {
+                    across if across < 1.0 => (across * 1000.0, "mm"),
+                    across => (across / 1000.0, "km"),
+                };
+                write!(
+                    f,
+                    "it shows {} {unit} from side to side, as no photo of a blast does: the unit of the flight is likely another than is stated",
+                    significant_digits(number, 2)
+                )
+            }
             Self::SmallAngles { largest, photos } => write!(
                 f,
                 "all angles of its {photos} photos lie between -{largest} and {largest}: they are read as degrees, and look like radians",
@@ -345,7 +356,7 @@ impl fmt::Display for Doubt {
                 how,
             } => write!(
                 f,
-                "its colours match those of the surface (r = {flipped:.2} at {points} points, else {correlation:.2}) after {how}: an axis of its pose is flipped"
+                "its colours match those of the surface (r = {flipped:.2} at {points} points, else {correlation:.2}) after {how}: an axis of its pose is flipped, or the picture was turned"
             ),
         }
     }

@@ -86,6 +86,7 @@ impl Doubt {
             Self::NoScale(_)
             | Self::UnitUnknown
             | Self::UnitNotSystems { .. }
+            | Self::StrangeSize { .. }
             | Self::SmallAngles { .. }
             | Self::NoRotation { .. }
             | Self::OtherLength { .. }

@@ -104,6 +104,9 @@ pub(super) struct Facts<'a> {
     pub rounding: f64,
 }
 
+/// Metres that a photo shows from side to side: a stone by itself to a whole mine. A lab's is 0.7 m, read as millimetres less than one.
+const ACROSS: std::ops::Range<f64> = 0.02..5000.0;
+
 /// Judges a photo: every reason for doubt, the gravest first, and what follows from them.
 pub(super) fn judge(facts: &Facts<'_>, limits: &Limits) -> Judged {
     let Facts {
@@ -173,6 +176,7 @@ pub(super) fn judge(facts: &Facts<'_>, limits: &Limits) -> Judged {
                 (ScalePair::Fitted, Some(line)) => [Some(line.top), Some(line.bottom)],
                 _ => [top, bottom],
             };
+            doubts.splice(0..0, strange_size(top.or(bottom), camera, unit));
             let limit = limits.top_bottom_ratio;
             if let Some(ratio) = ratio(top, bottom).filter(|&ratio| ratio > limit) {
                 doubts.push(Doubt::Ratio { ratio, limit });
@@ -220,6 +224,16 @@ pub(super) fn judge(facts: &Facts<'_>, limits: &Limits) -> Judged {
         verdict = Verdict::Check;
     }
     Judged { verdict, doubts }
+}
+
+/// Of a scale, where so much of the world is no blast's.
+fn strange_size(
+    scale: Option<f64>,
+    (width, _): (u32, u32),
+    unit: Option<LengthUnit>,
+) -> Option<Doubt> {
+    let across = f64::from(width) / scale? * unit?.metres();
+    (!ACROSS.contains(&across)).then_some(Doubt::StrangeSize { across })
 }
 
 /// The larger of two scales over the smaller.

@@ -111,6 +111,32 @@ fn a_good_photo_is_trusted() {
     assert_eq!(judged(&good(), &view(), &FOUND), (Verdict::Trust, vec![]));
 }
 
+/// 1280 px at 100 px/m are 12.8 m; read as millimetres 12.8 mm, which no photo of a blast shows, and at 0.2 px/m 6.4 km.
+#[test]
+fn a_photo_that_shows_too_little_or_too_much_of_the_world_is_doubted() {
+    let said = |per_unit: f64, unit: LengthUnit| {
+        let outcome = scale([on_surface(); 4], [per_unit; 4]);
+        let evidence = evidence(&FOUND);
+        let facts = Facts {
+            unit: Some(unit),
+            ..facts(&outcome, &evidence)
+        };
+        let judged = judge(&facts, &limits());
+        let doubts: Vec<String> = judged.doubts.iter().map(Doubt::to_string).collect();
+        (judged.verdict, doubts.join("; "))
+    };
+    assert_eq!(
+        said(100.0, LengthUnit::Metre),
+        (Verdict::Trust, String::new())
+    );
+    let (verdict, doubts) = said(100.0, LengthUnit::Millimetre);
+    assert_eq!(verdict, Verdict::Check);
+    assert!(doubts.starts_with("it shows 13 mm from side"), "{doubts}");
+    let (verdict, doubts) = said(0.2, LengthUnit::Metre);
+    assert_eq!(verdict, Verdict::Check);
+    assert!(doubts.starts_with("it shows 6.4 km from side"), "{doubts}");
+}
+
 /// Whose size nobody has seen may be ten times as large as the image that the scale is for.
 #[test]
 fn a_photo_of_unknown_size_is_not_trusted() {

@@ -5,14 +5,15 @@
 //! trial or method.
 //!
 //! A time is a number of minutes; of seconds, minutes or hours where the cell ("90 s") or else the
-//! column ("time_s", "cloud (h)") says so; or h:mm:ss or mm:ss, in a column of hours h:mm. An empty cell, or a dash, is a time
-//! that is missing.
+//! column ("time_s", "cloud (h)") says so; or h:mm:ss or mm:ss, in a column of hours h:mm. That mm:ss is no h:mm is said: a log
+//! of a site may mean either. An empty cell, or a dash, is a time that is missing.
 
 use std::path::Path;
 
 use crate::fault::Fault;
 use crate::files::FileError;
 use crate::fragmentation::Effort;
+use crate::tables::size_distributions::holds_passing;
 use crate::tables::table::{NumberRepairs, Row, Table, key};
 
 /// Seconds.
@@ -57,18 +58,26 @@ const OF_DAY: [&str; 8] = [
 /// Reads the times of steps from a table, with what was mended or passed over.
 ///
 /// # Errors
-/// With the line and the column: a time that is none, a step without a name, two times for one step.
+/// With the line and the column: a time that is none, a step without a name, two times for one step. A table of size
+/// distributions, whose percents are no times.
 pub fn effort_table(table: &Table) -> Result<(Effort, Vec<String>), Fault> {
     let mut reading = Reading {
         table,
         effort: Effort::new(),
         repairs: NumberRepairs::default(),
+        minutes_and_seconds: None,
         warnings: Vec::new(),
     };
     let named = |begins: &[&str]| {
         let is = |name: &String| begins.iter().any(|begin| key(name).starts_with(begin));
         table.header().iter().position(is)
     };
+    if named(&["step"]).is_none() && holds_passing(table) {
+        let what = "it holds size distributions, not the times of steps";
+        let remedy =
+            "give it to 'fragscale psd', or give a table with a column step and one of times";
+        return Err(Fault::new(what, remedy));
+    }
     // A unit alone: "minutes".
     let of_unit = |name: &String| seconds_of(name).is_some();
     let mut units = table
@@ -89,6 +98,7 @@ pub fn effort_table(table: &Table) -> Result<(Effort, Vec<String>), Fault> {
         return Err(Fault::new(what, "give steps and the times that they took"));
     }
     let mut warnings = reading.repairs.warnings();
+    warnings.extend(reading.minutes_and_seconds);
     warnings.extend(reading.warnings);
     Ok((reading.effort, warnings))
 }
@@ -106,6 +116,8 @@ struct Reading<'a> {
     table: &'a Table,
     effort: Effort,
     repairs: NumberRepairs,
+    /// How the first time of two parts was read, and all others.
+    minutes_and_seconds: Option<String>,
     warnings: Vec<String>,
 }
 
@@ -211,9 +223,18 @@ impl Reading<'_> {
             Fault::at(row.line, what, remedy)
         };
         if cell.contains(':') {
-            return clock(cell, seconds_each == HOUR)
-                .map(Some)
-                .ok_or_else(no_time);
+            let is_of_hours = seconds_each == HOUR;
+            let seconds = clock(cell, is_of_hours).ok_or_else(no_time)?;
+            if !is_of_hours && cell.matches(':').count() == 1 {
+                self.minutes_and_seconds.get_or_insert_with(|| {
+                    format!(
+                        "times of two parts are taken for minutes and seconds, the first is '{cell}' on line {}: hours are \
+                         written h:mm:ss, or h:mm in a column that says so, as 'time (h)'",
+                        row.line
+                    )
+                });
+            }
+            return Ok(Some(seconds));
         }
         let found = self.table.number_and_rest(row, column, &mut self.repairs);
         let Some((number, rest)) = found? else {
@@ -304,15 +325,57 @@ mod tests {
         assert_eq!(effort.seconds(0, 1), Some(720.0));
         assert_eq!(effort.seconds(1, 2), Some(90.0));
         assert_eq!(effort.of_all().missing, 3);
-        assert_eq!(warnings, ["the column 'who' is not used"]);
+        assert_eq!(warnings.len(), 2, "{warnings:?}");
+        assert_eq!(warnings[1], "the column 'who' is not used");
+    }
+
+    /// On a site's log "1:05" may be an hour and five minutes: once it is said how it was read.
+    #[test]
+    fn times_of_two_parts_are_said_once() {
+        let (effort, warnings) = read("step,a,b\nflight,12,1:05\nmesh,2:10,1:00:00\n").unwrap();
+        assert_eq!(effort.seconds(0, 1), Some(65.0));
+        assert_eq!(
+            warnings,
+            [
+                "times of two parts are taken for minutes and seconds, the first is '1:05' on line 2: hours are \
+              written h:mm:ss, or h:mm in a column that says so, as 'time (h)'"
+            ]
+        );
+        let (_, warnings) = read("step,a\nflight,0:01:05\nmesh,3\n").unwrap();
+        assert!(warnings.is_empty(), "{warnings:?}");
+    }
+
+    /// Percents are no times; flights that are called as percentiles or by their heights are no sizes.
+    #[test]
+    fn sizes_are_no_times() {
+        for text in [
+            "method,trial,size_mm,percent_passing\nsieve,,1,5\nsieve,,2,8\n",
+            "size_mm,percent_passing\n1,5\n2,8\n",
+            "Siebweite (mm);Durchgang (%)\n1;5\n2;8\n",
+            "sieve_mm,% retained\n2,40\n1,30\npan,30\n",
+            "size_mm,sieve,point cloud/1\n1,5,6\n2,8,9\n",
+        ] {
+            let fault = read(text).unwrap_err();
+            let what = "it holds size distributions, not the times of steps";
+            assert_eq!(fault.what, what, "{text}");
+        }
+        for text in [
+            "step,size of sample,passing on\nfly,1,2\n",
+            "task,F1,F2,F3\nfly,10,12,11\n",
+            "task,20 m,40 m\nfly,10,12\n",
+        ] {
+            assert!(read(text).is_ok(), "{text}");
+        }
     }
 
     /// In a column of hours two numbers are hours and minutes.
     #[test]
     fn clocks_of_hours() {
-        let (effort, _) = read("step,Time (h)\nsetup,1:30\nflight,0:45:30\nmeshing,2\n").unwrap();
+        let (effort, warnings) =
+            read("step,Time (h)\nsetup,1:30\nflight,0:45:30\nmeshing,2\n").unwrap();
         let seconds = effort.of_all().total;
         assert_eq!(seconds, 5400.0 + 2730.0 + 7200.0);
+        assert!(warnings.is_empty(), "{warnings:?}");
         let bad = read("step,Time (h)\nsetup,1:75\n").unwrap_err();
         assert!(bad.what.contains("'1:75' is no time"), "{bad}");
     }

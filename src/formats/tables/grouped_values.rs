@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::fault::Fault;
 use crate::files::FileError;
-use crate::tables::table::{NumberRepairs, Table};
+use crate::tables::table::{NumberRepairs, Row, Table};
 use crate::text::fields::shown;
 
 /// More groups than anyone compares; each is a name in a message or a line of a table.
@@ -55,19 +55,22 @@ impl Groups {
 }
 
 /// Reads the values of the column `value` in the groups of the column `group`, and again for each
-/// value of the column `by`. A line without a value is passed over and said.
+/// value of the column `by`; of the lines that have a text in a column alone, where `only` names both (column, text). A line without
+/// a value is passed over and said.
 ///
 /// # Errors
 /// With the line and the column: a column that is not there, a value that is no number, a line without
-/// its group.
+/// its group. Where no line has the text of `only`.
 pub fn grouped_values(
     table: &Table,
     group: &str,
     value: &str,
     by: Option<&str>,
+    only: Option<(&str, &str)>,
 ) -> Result<GroupedValues, Fault> {
     let (group, value) = (table.column(group)?, table.column(value)?);
     let by = by.map(|by| table.column(by)).transpose()?;
+    let rows = rows_of(table, only)?;
     let mut found = GroupedValues {
         all: Groups::default(),
         by: Vec::new(),
@@ -76,7 +79,7 @@ pub fn grouped_values(
     let mut parts = HashMap::<&str, usize>::new();
     let mut repairs = NumberRepairs::default();
     let mut without = Vec::new();
-    for row in table.rows() {
+    for row in rows {
         let Some(number) = table.number(row, value, &mut repairs)? else {
             without.push(row.line);
             continue;
@@ -84,7 +87,8 @@ pub fn grouped_values(
         for column in [Some(group), by].into_iter().flatten() {
             if row.cell(column).is_empty() {
                 let what = format!("a value without its {}", table.name(column));
-                return Err(Fault::at(row.line, what, "fill in the cell"));
+                let remedy = "fill in the cell, or take the lines of one method or the like (--only COLUMN=TEXT)";
+                return Err(Fault::at(row.line, what, remedy));
             }
         }
         let many = |what: String| {
@@ -120,6 +124,31 @@ pub fn grouped_values(
     Ok(found)
 }
 
+/// The lines that have a text in a column; without both, all.
+fn rows_of<'a>(table: &'a Table, only: Option<(&str, &str)>) -> Result<Vec<&'a Row>, Fault> {
+    let Some((name, text)) = only else {
+        return Ok(table.rows().iter().collect());
+    };
+    let column = table.column(name)?;
+    let is_taken = |row: &&Row| row.cell(column) == text.trim();
+    let rows: Vec<&Row> = table.rows().iter().filter(is_taken).collect();
+    if rows.is_empty() {
+        let what = format!(
+            "no line has '{}' in column {}",
+            shown(text),
+            table.name(column)
+        );
+        let some = table.rows().iter().map(|row| row.cell(column));
+        let some = some.into_iter().find(|cell| !cell.is_empty());
+        let remedy = match some {
+            Some(some) => format!("name a text of that column, such as '{}'", shown(some)),
+            None => "name another column".to_owned(),
+        };
+        return Err(Fault::new(what, remedy));
+    }
+    Ok(rows)
+}
+
 /// Reads grouped values from a file; see [`grouped_values`].
 ///
 /// # Errors
@@ -129,9 +158,10 @@ pub fn read_grouped_values(
     group: &str,
     value: &str,
     by: Option<&str>,
+    only: Option<(&str, &str)>,
 ) -> Result<GroupedValues, FileError> {
     let table = Table::read_file(path)?;
-    grouped_values(&table, group, value, by).map_err(|fault| FileError::new(path, fault))
+    grouped_values(&table, group, value, by, only).map_err(|fault| FileError::new(path, fault))
 }
 
 #[cfg(test)]
@@ -139,7 +169,25 @@ mod tests {
     use super::*;
 
     fn read(text: &str, by: Option<&str>) -> Result<GroupedValues, Fault> {
-        grouped_values(&Table::read(text)?, "Trial", "passing", by)
+        grouped_values(&Table::read(text)?, "Trial", "passing", by, None)
+    }
+
+    /// A sieve that was not repeated stands in the same table.
+    #[test]
+    fn of_one_method_alone() {
+        let text = "method,trial,passing\nsieve,,19\ncloud,1,20\nspheres,1,25\ncloud,2,21\n";
+        let table = Table::read(text).unwrap();
+        let read = |only| grouped_values(&table, "trial", "passing", None, Some(only));
+        let found = read(("method", "cloud")).unwrap();
+        assert_eq!(found.all.names, ["1", "2"]);
+        assert_eq!(found.all.values, [vec![20.0], vec![21.0]]);
+        let fault = read(("method", "clouds")).unwrap_err();
+        assert_eq!(
+            fault.to_string(),
+            "no line has 'clouds' in column method; name a text of that column, such as 'sieve'"
+        );
+        let fault = read(("way", "cloud")).unwrap_err();
+        assert!(fault.what.contains("no column 'way'"), "{fault}");
     }
 
     #[test]

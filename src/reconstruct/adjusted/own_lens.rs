@@ -82,7 +82,8 @@ impl Trials<'_> {
         let mut tried = with_own_lenses(model, own)?;
         let whose = &self.whose.again(&tried);
         // What is stated counts little once points fit: not before lenses are nearly right.
-        for _ in 0..2 {
+        for number in 0..2 {
+            self.progress.advance(number, 2)?;
             let trial = Adjustment {
                 images: HashSet::new(),
                 places: self.places.clone(),

@@ -25,7 +25,8 @@ pub(super) fn place(
     whose: &Whose<'_>,
     progress: &Progress,
 ) -> Result<(), Fault> {
-    progress.stage("placing the model in the world");
+    let stage = "placing the model in the world";
+    progress.stage(stage);
     progress.advance(0, 1)?;
     let mut images = Vec::new();
     let mut pairs = Vec::new();
@@ -78,6 +79,7 @@ pub(super) fn place(
         }
     }
     if whose.cameras().all(|(_, camera)| !camera.is_given) {
+        progress.stage("comparing the photos' focal lengths");
         contradicting.extend(&places);
         let trials = Trials {
             places: &contradicting,
@@ -88,6 +90,7 @@ pub(super) fn place(
         if !zoomed.is_empty() {
             *model = with_own_lenses(model, &zoomed)?;
         }
+        progress.stage(stage);
     }
     let whose = &whose.again(model);
     let rounds = [
@@ -95,8 +98,8 @@ pub(super) fn place(
         Weighed::ByItsPixels,
         Weighed::ByItsSquarePixels,
     ];
-    for weighed in rounds {
-        progress.advance(0, 1)?;
+    for (number, weighed) in (0..).zip(rounds) {
+        progress.advance(number, 3)?;
         let adjustment = Adjustment {
             images: HashSet::new(),
             places: places.clone(),

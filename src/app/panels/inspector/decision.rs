@@ -56,15 +56,13 @@ pub(super) fn decision(
         ui.data_mut(|data| data.insert_temp(id, note.clone()));
     }
     ui.horizontal_wrapped(|ui| {
-        let can_accept = reviewed.is_looked_at && open.is_computed();
+        let why_not = open.why_not_accepted(&reviewed);
+        let can_accept = why_not.is_none();
         let accepted = decided == Some(DecisionKind::Accepted) && since.is_empty();
         let accept = egui::Button::new("Accept").selected(accepted);
-        let hover = match can_accept {
-            true => {
-                "Checked, accepted: it goes along into the export, with this note and today's date"
-            }
-            false => "Its footprint and its scale field are still being looked at",
-        };
+        let hover = why_not.unwrap_or(
+            "Checked, accepted: it goes along into the export, with this note and today's date",
+        );
         let accept = ui.add_enabled(can_accept, accept);
         accept.widget_info(|| labelled("Accept this photo", can_accept));
         let accept = accept.on_hover_text(hover).on_disabled_hover_text(hover);

@@ -12,7 +12,7 @@ pub(super) const CHECK: f32 = 24.0;
 const LEAST_NAME: f32 = 60.0;
 
 /// A name narrower than this has no thumbnail beside it.
-pub(super) const WITH_THUMBNAIL: f32 = 128.0;
+const WITH_THUMBNAIL: f32 = 128.0;
 
 /// The columns in their order on the screen, with the widest number seen in each so far, points.
 pub(super) struct Columns {
@@ -115,10 +115,22 @@ impl Columns {
         self.all.iter().position(is_name)
     }
 
-    /// Notes what a row in sight has in a column: a wider name or number makes it wider in the next frame.
-    pub(super) fn note(&mut self, place: usize, text: &str, ui: &egui::Ui) {
+    /// Whether a thumbnail stands beside the names, with so many points for it and its gap: it cuts no name that is whole without it.
+    pub(super) fn has_thumbnail(&self, thumbnail: f32, widths: &[f32]) -> bool {
+        let Some(name) = self.name() else {
+            return false;
+        };
+        // Long names are cut in any column.
+        let usual = self.all[name].width.unwrap_or_default();
+        let wanted = self.seen[name].min(usual);
+        widths[name] >= WITH_THUMBNAIL && widths[name] - thumbnail >= wanted
+    }
+
+    /// Notes what a row in sight has in a column, beside a sign of so many points: a wider name or number makes it wider in the
+    /// next frame.
+    pub(super) fn note(&mut self, place: usize, text: &str, beside: f32, ui: &egui::Ui) {
         if let Some(seen) = self.seen.get_mut(place) {
-            *seen = seen.max(text_width(ui, text).ceil());
+            *seen = seen.max((beside + text_width(ui, text)).ceil());
         }
     }
 

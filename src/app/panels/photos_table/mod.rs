@@ -12,24 +12,26 @@ use super::accessible::{described, scales_in_words};
 use super::cloud_alone::cloud_alone;
 use super::field::combo_box;
 use super::review::row_menu;
+use super::rows::text_width;
 use super::verdict::{verdict_color, verdict_sign};
 use crate::command::Command;
 use crate::exports::{ColumnKind, PhotoLine};
 use crate::flight::{PhotoReview, Verdict};
 use crate::names;
 use crate::open_flight::OpenFlight;
+use crate::open_flight::reviewing::no_scale;
 use crate::open_flight::table::SortBy;
 use crate::state::State;
-use columns::{CHECK, Columns, WITH_THUMBNAIL};
+use columns::{CHECK, Columns};
 
 /// The height of the headings, which two lines fit into.
 const HEADER: f32 = 36.0;
 
-/// As wide as a verdict's sign and the gap behind it.
-const SIGN_AND_GAP: &str = "⚠ ";
-
 /// The height of a row, which a thumbnail fits into.
 const ROW: f32 = 34.0;
+
+/// The width of a thumbnail.
+const THUMBNAIL: f32 = ROW * 1.1;
 
 /// Draws the table.
 pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -62,7 +64,9 @@ fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
         open.history.now().pair,
         ui,
     );
-    let widths = columns.widths(ui.available_width(), ui.spacing().item_spacing.x);
+    let gap = ui.spacing().item_spacing.x;
+    let widths = columns.widths(ui.available_width(), gap);
+    let has_thumbnail = columns.has_thumbnail(THUMBNAIL + gap, &widths);
     let seen = columns.seen();
     let verdict_in_sight = columns.is_in_sight(ColumnKind::Verdict, &widths, ui);
     let selected_row = open
@@ -116,19 +120,15 @@ fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
                 let name = line.photo.name();
                 row.set_selected(open.selected == Some(photo));
                 row.col(|ui| {
-                    let mut chosen = chosen;
-                    let label = format!("Export {name}");
-                    let check = ui.checkbox(&mut chosen, "");
-                    check.widget_info(|| {
-                        egui::WidgetInfo::selected(egui::Role::CheckBox, true, chosen, &label)
-                    });
-                    if check.on_hover_text("Export this photo").changed() {
+                    // What went along before it had no scale is still left out by it.
+                    let why_not = no_scale(&line.photo).filter(|_| !chosen);
+                    if let Some(chosen) = export_box(name, chosen, why_not, ui) {
                         commands.push(Command::Choose(photo, chosen));
                     }
                 });
                 for (place, column) in columns.all.clone().into_iter().enumerate() {
                     row.col(|ui| {
-                        if column.kind == ColumnKind::Name && widths[place] >= WITH_THUMBNAIL {
+                        if column.kind == ColumnKind::Name && has_thumbnail {
                             thumbnail(open, photo, ui);
                         }
                         match column.kind {
@@ -137,16 +137,17 @@ fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
                                 let text = column.short_value(&line);
                                 if column.kind == ColumnKind::Name && !verdict_in_sight {
                                     // In a narrow list the verdict goes last.
-                                    columns.note(place, &format!("{SIGN_AND_GAP}{text}"), ui);
+                                    let beside = sign_width(line.photo, ui) + gap;
+                                    columns.note(place, &text, beside, ui);
                                     verdict(line.photo, true, ui);
                                 } else {
-                                    columns.note(place, &text, ui);
+                                    columns.note(place, &text, 0.0, ui);
                                 }
                                 names::name(ui, &text);
                             }
                             kind => {
                                 let text = column.short_value(&line);
-                                columns.note(place, &text, ui);
+                                columns.note(place, &text, 0.0, ui);
                                 let number = names::whole_number(ui, text, false);
                                 if kind == ColumnKind::Scale {
                                     // All digits are under the mouse.
@@ -180,6 +181,24 @@ fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
     if hovered != open.table.hovered {
         commands.push(Command::HoverPhoto(hovered));
     }
+}
+
+/// The box of a photo that goes along or not, grey where `why_not` says why; returns what it was changed to.
+fn export_box(
+    name: &str,
+    mut chosen: bool,
+    why_not: Option<&str>,
+    ui: &mut egui::Ui,
+) -> Option<bool> {
+    let can = why_not.is_none();
+    let check = ui.add_enabled(can, egui::Checkbox::new(&mut chosen, ""));
+    check.widget_info(|| {
+        let label = format!("Export {name}");
+        egui::WidgetInfo::selected(egui::Role::CheckBox, can, chosen, label)
+    });
+    let check = check.on_hover_text("Export this photo");
+    let check = check.on_disabled_hover_text(why_not.unwrap_or_default());
+    check.changed().then_some(chosen)
 }
 
 fn filter(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -272,7 +291,7 @@ fn sort_button(
 }
 
 fn thumbnail(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
-    let size = egui::vec2(ROW * 1.1, ROW - 6.0);
+    let size = egui::vec2(THUMBNAIL, ROW - 6.0);
     match open.pictures.thumbnails.get(photo).and_then(Option::as_ref) {
         Some(texture) => {
             let image = egui::Image::new(texture).fit_to_exact_size(size);
@@ -288,6 +307,11 @@ fn thumbnail(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
             ui.painter().rect_filled(place, 2.0, color);
         }
     }
+}
+
+/// How wide the sign of its verdict is, points.
+fn sign_width(photo: PhotoReview<'_>, ui: &egui::Ui) -> f32 {
+    text_width(ui, photo.settled().map_or("…", verdict_sign))
 }
 
 /// The verdict, or its sign alone.

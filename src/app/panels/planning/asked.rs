@@ -53,24 +53,32 @@ pub fn asked_of_plan(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
             ui.separator();
             ui.horizontal_wrapped(|ui| {
                 let is_there = planning.is_of_now();
-                for (name, asking, hover) in [
+                let made = planning.made.as_ref().filter(|_| is_there);
+                let no_mission = made.and_then(|made| made.no_mission());
+                for (name, asking, why_not, hover) in [
                     (
                         "Save mission…",
                         Asking::Mission,
+                        no_mission,
                         "For DJI, QGroundControl, Mission Planner, Litchi, or as KML or GeoJSON",
                     ),
                     (
                         "Save table…",
                         Asking::PlanTable,
+                        None,
                         "Every photo with what it will show, as CSV or JSON",
                     ),
                     (
                         "Save page…",
                         Asking::PlanSheet,
+                        None,
                         "For the pilot, to print: map, numbers, checklist, photos",
                     ),
                 ] {
-                    let button = ui.add_enabled(is_there, egui::Button::new(name));
+                    let can = is_there && why_not.is_none();
+                    let button = ui.add_enabled(can, egui::Button::new(name));
+                    let why_not = why_not.unwrap_or("There is no plan of what is asked for now");
+                    let button = button.on_disabled_hover_text(why_not);
                     if button.on_hover_text(hover).clicked() {
                         commands.push(Command::Ask(Some(asking)));
                     }

@@ -78,8 +78,8 @@ pub(super) fn found(state: &State, open: &OpenFlight, ui: &mut Ui, commands: &mu
     pairs("numbers of the plan", rows, ui);
     if let Some(why) = &made.no_way {
         ui.colored_label(ui.visuals().error_fg_color, why);
-    } else if made.ways.is_empty() {
-        ui.weak("Set the take-off to see the way, its time, and to write a mission.");
+    } else if let Some(why) = made.no_mission() {
+        ui.weak(why);
     }
     if let Some(why) = &made.no_sun {
         ui.colored_label(ui.visuals().error_fg_color, why);

@@ -194,7 +194,7 @@ fn decide(
     let accepted = is(DecisionKind::Accepted);
     let left_out = is(DecisionKind::LeftOut);
     ui.horizontal_wrapped(|ui| {
-        button(
+        let accept = button(
             state,
             actions::review::ACCEPT,
             "Accept (Enter)",
@@ -202,6 +202,10 @@ fn decide(
             ui,
             commands,
         );
+        let open = state.open.as_deref();
+        if let Some(why) = open.and_then(|open| open.why_not_accepted(&reviewed)) {
+            accept.on_disabled_hover_text(why);
+        }
         button(
             state,
             actions::review::LEAVE_OUT,
@@ -249,13 +253,15 @@ fn button(
     on: bool,
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
-) {
+) -> egui::Response {
     let command = (action.command)(state);
     let button = ui.add_enabled(command.is_some(), egui::Button::new(text).selected(on));
     button.widget_info(|| {
         egui::WidgetInfo::selected(egui::Role::Button, command.is_some(), on, action.label)
     });
-    if button.on_hover_text(action.hover).clicked() {
+    let button = button.on_hover_text(action.hover);
+    if button.clicked() {
         commands.extend(command);
     }
+    button
 }

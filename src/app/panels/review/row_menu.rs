@@ -24,35 +24,39 @@ pub(in crate::panels) fn row_menu(
     };
     let decide = |kind| Command::Decide(photo, Some((kind, note())));
     let select = || Command::Select(Some(photo));
-    let can_accept = reviewed.is_looked_at && open.is_computed();
+    let why_not = open.why_not_accepted(&reviewed);
+    let nothing_decided = reviewed.decision.is_none();
     let scales = state.scales_of(photo);
+    let no_scales = scales.is_none();
+    // What it is called, why it makes no sense now, and what it does.
     let entries = [
         (
             "Go to",
-            true,
+            None,
             vec![select(), Command::View(ViewChange::FitSelected)],
         ),
-        ("Accept", can_accept, vec![decide(DecisionKind::Accepted)]),
-        ("Leave out", true, vec![decide(DecisionKind::LeftOut)]),
+        ("Accept", why_not, vec![decide(DecisionKind::Accepted)]),
+        ("Leave out", None, vec![decide(DecisionKind::LeftOut)]),
         (
             "Take the decision back",
-            reviewed.decision.is_some(),
+            nothing_decided.then_some("Nothing is decided of it"),
             vec![Command::Decide(photo, None)],
         ),
         (
             "Copy scales",
-            scales.is_some(),
+            no_scales.then_some("There are no scales to copy now"),
             scales.into_iter().map(Command::Copy).collect(),
         ),
         (
             "Copy file name",
-            true,
+            None,
             vec![Command::Copy(reviewed.name().to_owned())],
         ),
     ];
     ui.weak(reviewed.name());
-    for (name, is_possible, does) in entries {
-        let button = ui.add_enabled(is_possible, egui::Button::new(name));
+    for (name, why_not, does) in entries {
+        let button = ui.add_enabled(why_not.is_none(), egui::Button::new(name));
+        let button = button.on_disabled_hover_text(why_not.unwrap_or_default());
         if button.clicked() {
             commands.extend(does);
             ui.close();

@@ -69,7 +69,7 @@ pub(super) fn profile(
     for ([toe, angle], face) in names.into_iter().zip(&faces) {
         if let Some(face) = face {
             rows.push((toe, height(face.toe.point.z)));
-            let doubt = match is_of_a_stone(face, profile.length) {
+            let doubt = match is_of_a_stone(face, profile) {
                 true => " (a stone's side)",
                 false => "",
             };

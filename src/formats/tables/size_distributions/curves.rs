@@ -503,8 +503,9 @@ fn distribution(
                          {line_before} and {percent} % on line {line}"
                     ),
                 };
-                let remedy =
-                    "keep one, or tell the curves apart in a column method, trial or photo";
+                // `psd fit` has no such options.
+                let remedy = "keep one, or tell the curves apart in a column method, trial or photo \
+                              (psd compare: name it by --method, --trial or --photo)";
                 return Err(Fault::at(line.max(line_before), what, remedy));
             }
             let fall = *percent_before - percent;

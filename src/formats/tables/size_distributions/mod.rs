@@ -103,6 +103,17 @@ pub(crate) fn is_table(start: &str, whole: bool) -> bool {
     })
 }
 
+/// Whether a table holds sizes with what passes or stays, beyond doubt. Columns that are called by sizes or percentiles ("20 m",
+/// "F1") may as well be flights.
+pub(crate) fn holds_passing(table: &Table) -> bool {
+    let layout = Layout::of(table, &DistributionColumns::default());
+    let is_by_size = matches!(
+        layout,
+        Ok(Layout::Long { .. } | Layout::Retained { .. } | Layout::Wide { .. })
+    );
+    is_by_size && Layout::is_sure(table)
+}
+
 /// The table of a text, with its units in the names of its columns or behind its sizes.
 fn table_of(text: &str) -> Result<Table, Fault> {
     Table::read(text).map(units_beside::in_their_places)

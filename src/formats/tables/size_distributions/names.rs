@@ -2,8 +2,9 @@
 
 use super::size_unit::{SizeUnit, in_brackets, is_also_a_word, no_length};
 use super::vocabulary::{
-    EACH_NAMES, MASS_NAMES, PASSING_NAMES, PERCENT_NAMES, SIZE_NAMES, SIZE_WORDS, is_retained,
-    says_cumulative, says_mass, says_percent, says_retained, words,
+    EACH_NAMES, MASS_NAMES, METHOD_NAMES, PASSING_NAMES, PERCENT_NAMES, PHOTO_NAMES, SIZE_NAMES,
+    SIZE_WORDS, TRIAL_NAMES, is_retained, says_cumulative, says_mass, says_percent, says_retained,
+    words,
 };
 use crate::fragmentation::Weighting;
 use crate::tables::table::key;
@@ -415,23 +416,6 @@ pub(super) fn role(name: &str) -> Role {
     if of_size {
         return of_size_role(&words, unit);
     }
-    let photos = [
-        "photo",
-        "photos",
-        "photoname",
-        "photofile",
-        "image",
-        "images",
-        "imagename",
-        "imagefile",
-        "picture",
-        "file",
-        "filename",
-        "label",
-        "sample",
-        "samplename",
-        "name",
-    ];
     // "Sieve No. (ASTM)"
     let series = ["astm", "e11", "us", "uss", "standard"];
     let plain = words.iter().filter(|word| !series.contains(&word.as_str()));
@@ -444,10 +428,9 @@ pub(super) fn role(name: &str) -> Role {
         | "tylermesh" | "meshus" | "meshastm" | "astmmesh" | "ussieve" | "ussieveno"
         | "ussievenumber" | "astmsieve" | "astmsieveno" | "sieveno" | "sievenumber"
         | "screenno" | "screennumber" => Role::PerhapsSize(unit),
-        "method" | "methods" | "technique" | "source" => Role::Method,
-        "trial" | "trials" | "trialnumber" | "trialno" | "run" | "repetition" | "replicate"
-        | "repeat" | "test" => Role::Trial,
-        name => match photos.iter().position(|photo| *photo == name) {
+        name if METHOD_NAMES.contains(&name) => Role::Method,
+        name if TRIAL_NAMES.contains(&name) => Role::Trial,
+        name => match PHOTO_NAMES.iter().position(|photo| *photo == name) {
             Some(place) => Role::Photo(place),
             None if any(&["area", "areas", "mass", "masses", "weight", "weights"]) => Role::Weight,
             None => Role::Other,

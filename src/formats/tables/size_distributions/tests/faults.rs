@@ -30,13 +30,14 @@ fn bad_points_have_a_line_and_a_remedy() {
             "size_mm,passing\n10,50\n20,60\n10,51\n",
             4,
             "size 10 mm is there twice, with 50 % on line 2 and 51 % on line 4; keep one, or tell the \
-             curves apart in a column method, trial or photo",
+             curves apart in a column method, trial or photo (psd compare: name it by --method, \
+             --trial or --photo)",
         ),
         (
             "photo,10 mm,1 cm,20 mm\na,10,11,12\n",
             2,
             "'a': size 10 mm is there twice, with 10 % and 11 %; keep one, or tell the curves apart in a \
-             column method, trial or photo",
+             column method, trial or photo (psd compare: name it by --method, --trial or --photo)",
         ),
         (
             "size_mm,passing\n10,50\n",

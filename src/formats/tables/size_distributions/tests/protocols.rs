@@ -507,6 +507,32 @@ fn laboratories_write_german_french_and_spanish() {
     }
 }
 
+/// Method, trial and photo tell curves apart in these languages, too.
+#[test]
+fn method_trial_and_photo_in_other_languages() {
+    for names in [
+        "Methode;Versuch;Foto",
+        "Verfahren;Probe;Bild",
+        "Méthode;Essai;Photo",
+        "méthode;échantillon;photo",
+        "Método;Ensayo;Foto",
+        "método;muestra;imagen",
+        "Metodo;Campione;Immagine",
+        "Метод;Проба;Фото",
+    ] {
+        let header = format!("{names};Siebweite (mm);Durchgang (%)");
+        let (set, _) = read(&format!(
+            "{header}\nSieb;1;a;10;20\nSieb;1;a;40;80\nSieb;2;b;10;30\nSieb;2;b;40;90\n"
+        ));
+        let labels = set.curves.iter().map(|curve| {
+            let labels = &curve.labels;
+            [&labels.method, &labels.trial, &labels.photo].map(String::as_str)
+        });
+        let labels: Vec<_> = labels.collect();
+        assert_eq!(labels, [["Sieb", "1", "a"], ["Sieb", "2", "b"]], "{names}");
+    }
+}
+
 /// What stays on sieves under a name that says so in short, and under one that nobody knows: something in the pan tells.
 #[test]
 fn something_in_the_pan_is_retained() {
