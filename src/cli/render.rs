@@ -194,6 +194,11 @@ fn share(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn render(arguments: &RenderArguments, progress: &Progress) -> Result<Answer, String> {
+    let inputs = arguments.flight.files().chain(&arguments.mission);
+    let outputs = Outputs::new(arguments.force, inputs);
+    let mut outputs = outputs.and(&arguments.output, Kind::Result)?;
+    let opened = arguments.flight.open(progress)?;
+    outputs.read(&opened.read)?;
     let ending = arguments.output.extension().unwrap_or_default();
     if !ending.is_empty() && !ending.eq_ignore_ascii_case("png") {
         let what = format!(
@@ -203,11 +208,6 @@ pub(super) fn render(arguments: &RenderArguments, progress: &Progress) -> Result
         let fault = Fault::new(what, "end the name in .png");
         return Err(FileError::new(&arguments.output, fault).to_string());
     }
-    let inputs = arguments.flight.files().chain(&arguments.mission);
-    let outputs = Outputs::new(arguments.force, inputs);
-    let mut outputs = outputs.and(&arguments.output, Kind::Result)?;
-    let opened = arguments.flight.open(progress)?;
-    outputs.read(&opened.read)?;
     let path = &arguments.flight.flight;
     let compared = compared(arguments, &opened, progress).map_err(|error| error.to_string())?;
     let at_flight = |fault| FileError::new(path, fault).to_string();

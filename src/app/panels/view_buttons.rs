@@ -17,6 +17,11 @@ pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         return;
     };
     let is_narrow = ui.available_width() < NARROW;
+    if is_narrow {
+        // All in one row beside both panels at 1280 points.
+        ui.spacing_mut().button_padding.x = 6.0;
+        ui.spacing_mut().item_spacing.x = 4.0;
+    }
     let text = |words: &'static str, sign: &'static str| match is_narrow {
         true => sign,
         false => words,
