@@ -130,7 +130,7 @@ fn look_at(
     for noted in &reasons {
         let _ = writeln!(text, "{}: {}", noted.whose, noted.notes);
     }
-    if let Some(others) = opening::without_pose(&opened.photo_files) {
+    if let Some(others) = &opened.without_pose {
         let _ = writeln!(text, "{others}");
     }
     Ok(Looked {

@@ -206,6 +206,8 @@ pub struct StatedOfFlight<'a> {
     pub reconstruction: Option<&'a FlightReconstruction>,
     /// The axis that the surface's triangles say is up, where that is not z.
     pub doubtful_up: Option<UpAxis>,
+    /// The photos that lie beside the flight's and have no pose in it, in words.
+    pub without_pose: Option<&'a str>,
 }
 
 /// How a flight is, in the order of [`HealthItem`]; of its poses and points only where something speaks against them, of
@@ -221,7 +223,7 @@ pub fn flight_health(review: &Review, stated: &StatedOfFlight<'_>) -> Vec<Health
         Some(exif(review, stated)),
         Some(holes(review)),
         points(review),
-        Some(photos(review)),
+        Some(photos(review, stated)),
     ];
     found.into_iter().flatten().collect()
 }
@@ -526,13 +528,18 @@ fn files_found(review: &Review) -> usize {
     review.photos().filter(is_found).count()
 }
 
-fn photos(review: &Review) -> HealthFinding {
+fn photos(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
     let (found, count) = (files_found(review), review.count());
     let short = format!("{found} of {count}");
     let (health, says) = match found == count && count > 0 {
         true => match doubted(review, HealthItem::Photos) {
             Some(doubted) => (Health::Bad, doubted.says(review)),
-            None => (Health::Good, format!("All {count} photo files are there.")),
+            None => {
+                let others = stated.without_pose.map(|others| format!(" {others}."));
+                let others = others.unwrap_or_default();
+                let says = format!("All {count} photo files are there.{others}");
+                (Health::Good, says)
+            }
         },
         false => (
             Health::Bad,

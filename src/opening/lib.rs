@@ -74,7 +74,7 @@ pub use open::{
 pub use origin::{FlightOrigin, path_from};
 pub use outlines::{OutlinesOfOthers, OutlinesRead, outline_files, read_outlines, saved_outlines};
 
-pub use photo_files::{PhotoFile, apart_from_photos, without_pose};
+pub use photo_files::{PhotoFile, apart_from_photos};
 pub use pixels::{
     Colours, ComparedPixels, PhotosTogether, Together, compare_all_pixels, compare_pixels,
     take_compared,

@@ -37,7 +37,7 @@ impl PhotoFile {
 }
 
 /// The photos that lie beside those of a flight and have no pose in it, in words; `None` where there are none.
-pub fn without_pose(files: &[PhotoFile]) -> Option<String> {
+pub(crate) fn without_pose(files: &[PhotoFile]) -> Option<String> {
     let used: HashSet<&Path> = files.iter().filter_map(|of| of.path.as_deref()).collect();
     let folders: BTreeSet<&Path> = used.iter().filter_map(|path| path.parent()).collect();
     let mut names = Vec::new();

@@ -5,6 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::common::{error_of, fragscale, stdout_of};
+use fragscale::flight::Limits;
+use fragscale::jobs::Progress;
+use fragscale::opening::{HealthItem, OpenOptions, StatedOfFlight, flight_health, open_flight};
 
 /// The bundled flight in a folder of its own, its flight.toml and poses.csv as these change them.
 fn copied(
@@ -45,6 +48,18 @@ fn photos_without_a_pose_are_named() {
     let said = stdout_of(&["check", &flight]);
     let others = "6 photos that lie beside these have no pose, and no scale (IMG_0004.jpg, ";
     assert!(said.contains(others), "{said}");
+    // The window's strip says the same.
+    let (options, progress) = (OpenOptions::default(), Progress::default());
+    let opened = open_flight(Path::new(&flight), &options, &progress).expect("a flight");
+    let review = opened.review_without_colours(&Limits::default(), &progress);
+    let stated = StatedOfFlight {
+        without_pose: opened.without_pose.as_deref(),
+        ..StatedOfFlight::default()
+    };
+    let health = flight_health(&review.expect("a review"), &stated);
+    let photos = health.iter().find(|found| found.item == HealthItem::Photos);
+    let says = &photos.expect("its photos").says;
+    assert!(says.contains(others), "{says}");
     let all = copied(folder.path(), str::to_owned, str::to_owned);
     assert!(!stdout_of(&["check", &all]).contains("have no pose"));
 }

@@ -21,6 +21,8 @@ pub struct FlightFiles {
     pub options: OpenOptions,
     /// Of each photo.
     pub photo_files: Arc<Vec<PhotoFile>>,
+    /// The photos that lie beside them and have no pose, in words.
+    pub without_pose: Option<String>,
     /// The world's coordinate system where the files state one.
     pub crs: Option<String>,
     /// What the surface's triangles say is up, where that is not z.
@@ -77,6 +79,7 @@ impl FlightFiles {
             path,
             options,
             photo_files: Arc::new(opened.photo_files),
+            without_pose: opened.without_pose,
             crs: opened.crs,
             doubtful_up: opened.doubtful_up,
             inputs: opened.inputs,

@@ -481,6 +481,7 @@ impl OpenFlight {
             crs: self.files.crs.as_deref(),
             reconstruction: self.files.reconstruction.as_ref(),
             doubtful_up: self.files.doubtful_up,
+            without_pose: self.files.without_pose.as_deref(),
         };
         self.health = flight_health(&self.review, &stated);
     }

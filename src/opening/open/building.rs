@@ -14,7 +14,7 @@ use crate::formats::CloudFile;
 use crate::in_part::InPart;
 use crate::jobs::Progress;
 use crate::origin::FlightOrigin;
-use crate::photo_files::PhotoFile;
+use crate::photo_files::{PhotoFile, without_pose};
 use crate::surface::Surface;
 
 /// Builds the flight.
@@ -114,6 +114,7 @@ pub(super) fn build(
     Ok(Opened {
         flight: Arc::new(flight),
         warnings: source.warnings,
+        without_pose: without_pose(&photo_files),
         photo_files,
         looked_up,
         doubtful_up: source.doubtful_up,

@@ -91,6 +91,8 @@ pub struct Opened {
     pub warnings: Vec<String>,
     /// The image file of each photo, in the order of the flight's photos.
     pub photo_files: Vec<PhotoFile>,
+    /// The photos that lie beside them and have no pose, in words.
+    pub without_pose: Option<String>,
     /// What was looked up of the photos, their colours excepted.
     pub looked_up: LookedUp,
     /// What the surface's triangles say is up, where that is not z.
