@@ -42,7 +42,7 @@ pub(crate) struct Adjustment<'a> {
     pub(crate) places: HashMap<u32, (Vec3, f64)>,
     /// How the lenses are stated.
     pub(crate) whose: &'a Whose<'a>,
-    /// What is known of places and lenses counts beside ...
+    /// What is known of places and lenses is weighed against ...
     pub(crate) weighed: Weighed,
     /// At most.
     pub(crate) iterations: usize,
@@ -52,12 +52,12 @@ pub(crate) struct Adjustment<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Weighed {
     /// ... a pixel, while a model grows: it does not tell its own yet. Lenses of few photos are held.
-    ByAPixel,
+    APixel,
     /// ... how far its points lie from where photos see them.
-    ByItsPixels,
+    ItsPixels,
     /// ... the same, and pixels are as square as the lens is stated, and the focal length is where it was found: photos that all look
     /// straight down the same way fit as well with a world that is stretched along one side of theirs.
-    ByItsSquarePixels,
+    ItsSquarePixels,
 }
 
 /// Adjusts, then takes away what does not fit. After an error the model is empty.
@@ -70,8 +70,8 @@ pub(crate) fn adjust(
     progress: &Progress,
 ) -> Result<(), Fault> {
     let pixel = match what.weighed {
-        Weighed::ByAPixel => None,
-        Weighed::ByItsPixels | Weighed::ByItsSquarePixels => Some(pixel_deviation(model)),
+        Weighed::APixel => None,
+        Weighed::ItsPixels | Weighed::ItsSquarePixels => Some(pixel_deviation(model)),
     };
     let is_local = !what.images.is_empty();
     let mut of_camera: HashMap<u32, usize> = HashMap::new();
@@ -94,7 +94,7 @@ pub(crate) fn adjust(
     let counted = |deviation: f64| deviation / pixel.unwrap_or(1.0);
     let lenses = what.whose.cameras().map(|(camera, known)| {
         let (mut values, mut deviations) = known.expected();
-        if what.weighed == Weighed::ByItsSquarePixels
+        if what.weighed == Weighed::ItsSquarePixels
             && let Some(found) = model.camera(camera)
         {
             let longer = 2.0 * found.mean_focal() / (values[0] + values[1]);

@@ -1,7 +1,7 @@
 //! Photos that were zoomed, cropped or stabilised, which their files do not say: under one lens with the others they bend the whole
 //! model. They are found by a trial in which each photo has a lens of its own: the focal lengths of photos of one camera then
-//! agree but for theirs. Where small blocks tell no length well, the farthest is tried alone, and has to make points and places fit
-//! better. With a lens of its own a photo that was not zoomed does no harm.
+//! agree but for theirs. Where they do not agree, because small blocks tell no length well or many were zoomed, the farthest are tried one
+//! by one, and each has to make points and places fit better. With a lens of its own a photo that was not zoomed does no harm.
 //!
 //! Photos of one lens come out apart by 0.01 to 0.05 % (simulated, seen to 0.1 pixels), and by 0.1 and 0.3 % (Sceaux and Kermit's
 //! doll, eleven real photos each; medians).
@@ -29,6 +29,9 @@ const TIMES: f64 = 6.0;
 /// have makes 8 of it, its numbers (5 and -1: simulated, and Kermit's doll); 3.5 % of one photo of six, with RTK, made 1560.
 const BETTER: f64 = 60.0;
 
+/// So many photos are tried one by one at most.
+const ONE_BY_ONE: usize = 4;
+
 /// What the trials adjust with: see [`Adjustment`].
 pub(super) struct Trials<'a> {
     pub(super) places: &'a HashMap<u32, (Vec3, f64)>,
@@ -54,23 +57,41 @@ impl Trials<'_> {
             return Ok(HashSet::new());
         }
         let tried = self.adjusted(model, &images)?;
-        let apart: Vec<Apart> = (of_camera.values())
+        let mut apart: Vec<Apart> = (of_camera.values())
             .flat_map(|images| apart(&tried, images))
             .collect();
         let clear = apart.iter().filter(|apart| apart.is_clear);
         let clear: HashSet<u32> = clear.map(|apart| apart.image).collect();
-        let farthest = apart.iter().max_by(|a, b| a.by.total_cmp(&b.by));
-        match farthest.map(|farthest| HashSet::from([farthest.image])) {
-            Some(alone) if clear.is_empty() => {
-                let with = self.adjusted(model, &alone)?;
-                let without = self.adjusted(model, &HashSet::new())?;
-                Ok(match self.is_better(&with, &without) {
-                    true => alone,
-                    false => HashSet::new(),
-                })
-            }
-            _ => Ok(clear),
+        if !clear.is_empty() || apart.is_empty() {
+            return Ok(clear);
         }
+        apart.sort_by(|a, b| b.by.total_cmp(&a.by));
+        let pixel = counted_pixel(&tried);
+        // What does not fit is taken away: it counts as if it did just so.
+        let most = off_px(model).count();
+        let misfit = |model: &Reconstruction| {
+            let missing = most.saturating_sub(off_px(model).count());
+            self.misfit(model, pixel) + missing as f64 * (FARTHEST_PX / pixel).powi(2)
+        };
+        let mut own = HashSet::new();
+        let mut least = misfit(&self.adjusted(model, &own)?);
+        // Frames of a stabilised film are all cropped otherwise: with a lens of its own for one the others bend it still.
+        let all: HashSet<u32> = apart.iter().map(|apart| apart.image).collect();
+        let is_of_all = misfit(&tried) + BETTER * (all.len() as f64) < least;
+        for next in apart.iter().take(ONE_BY_ONE) {
+            own.insert(next.image);
+            let with = misfit(&self.adjusted(model, &own)?);
+            if with + BETTER > least {
+                own.remove(&next.image);
+                break;
+            }
+            least = with;
+        }
+        let is_of_some = (1..ONE_BY_ONE).contains(&own.len());
+        Ok(match is_of_all && !is_of_some {
+            true => all,
+            false => own,
+        })
     }
 
     /// The model adjusted, with lenses of their own for these photos.
@@ -88,7 +109,7 @@ impl Trials<'_> {
                 images: HashSet::new(),
                 places: self.places.clone(),
                 whose,
-                weighed: Weighed::ByItsPixels,
+                weighed: Weighed::ItsPixels,
                 iterations: 30,
             };
             adjust(&mut tried, trial, self.progress)?;
@@ -96,30 +117,23 @@ impl Trials<'_> {
         Ok(tried)
     }
 
-    fn is_better(&self, with: &Reconstruction, without: &Reconstruction) -> bool {
-        let observations = off_px(with).count();
-        let pixel = counted_deviation(
-            pixel_deviation(with),
-            observations,
-            with.registered_image_count(),
-        );
-        // What did not fit was taken away: it counts as if it did just so.
-        let most = observations.max(off_px(without).count());
-        let misfit = |model: &Reconstruction| {
-            let missing = most - off_px(model).count();
-            let off = off_px(model).chain(std::iter::repeat_n(FARTHEST_PX, missing));
-            let points: f64 = off.map(|off| (off / pixel).powi(2)).sum();
-            let places = self
-                .places
-                .iter()
-                .filter_map(|(&image, (place, deviation))| {
-                    let off = (model.projection_center(image)? - place).norm();
-                    Some((off / deviation).powi(2))
-                });
-            points + places.sum::<f64>()
-        };
-        misfit(with) + BETTER < misfit(without)
+    /// Squares of how far points lie from where photos see them, and cameras from their places, over the deviations; `pixel` is that
+    /// of points.
+    fn misfit(&self, model: &Reconstruction, pixel: f64) -> f64 {
+        let points: f64 = off_px(model).map(|off| (off / pixel).powi(2)).sum();
+        let places = self.places.iter();
+        let places = places.filter_map(|(&image, (place, deviation))| {
+            let off = (model.projection_center(image)? - place).norm();
+            Some((off / deviation).powi(2))
+        });
+        points + places.sum::<f64>()
     }
+}
+
+/// As what a pixel counts where photos see points so well.
+fn counted_pixel(model: &Reconstruction) -> f64 {
+    let (observations, photos) = (off_px(model).count(), model.registered_image_count());
+    counted_deviation(pixel_deviation(model), observations, photos)
 }
 
 /// A photo whose focal length came out apart from that of most photos of its camera.

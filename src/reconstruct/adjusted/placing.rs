@@ -86,7 +86,11 @@ pub(super) fn place(
             whose,
             progress,
         };
-        let zoomed = trials.of_another_length(model)?;
+        let zoomed = match trials.of_another_length(model) {
+            Err(fault) if progress.is_cancelled() => return Err(fault),
+            // A trial without a solution says nothing of the model itself.
+            found => found.unwrap_or_default(),
+        };
         if !zoomed.is_empty() {
             *model = with_own_lenses(model, &zoomed)?;
         }
@@ -94,9 +98,9 @@ pub(super) fn place(
     }
     let whose = &whose.again(model);
     let rounds = [
-        Weighed::ByItsPixels,
-        Weighed::ByItsPixels,
-        Weighed::ByItsSquarePixels,
+        Weighed::ItsPixels,
+        Weighed::ItsPixels,
+        Weighed::ItsSquarePixels,
     ];
     for (number, weighed) in (0..).zip(rounds) {
         progress.advance(number, 3)?;

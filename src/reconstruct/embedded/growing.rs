@@ -174,7 +174,7 @@ impl Growing<'_> {
             images,
             places: HashMap::new(),
             whose: &Whose::of(model, self.photos),
-            weighed: Weighed::ByAPixel,
+            weighed: Weighed::APixel,
             iterations,
         };
         adjust(model, adjustment, self.progress)

@@ -44,8 +44,8 @@ struct Survey {
     receivers: DVec3,
     /// Of the stated focal length: how far off it is, and how far it is said to be, parts of it.
     stated: (f64, f64),
-    /// A photo that was zoomed, and how many times, which its file does not say.
-    zoomed: Option<(usize, f64)>,
+    /// How many times each photo was zoomed, which its file does not say.
+    zooms: Vec<f64>,
     /// How well photos see points, pixels.
     seen_to: f64,
     points: Vec<DVec3>,
@@ -61,10 +61,10 @@ impl Survey {
         let points = (0..500).map(|_| DVec2::new(place(), place()));
         let points = points.map(|at| at.extend(3.0 * (0.12 * at.x).sin() * (0.1 * at.y).cos()));
         Self {
+            zooms: vec![1.0; centers.len()],
             centers,
             receivers: DVec3::new(2.0, 2.0, 5.0),
             stated,
-            zoomed: None,
             seen_to: SEEN_TO,
             points: points.collect(),
             of_model: Vec::new(),
@@ -131,8 +131,7 @@ impl Survey {
         for (id, &center) in (1..).zip(&self.centers) {
             let of = Self::pose(center);
             let mut pixels = Vec::new();
-            let zoom = self.zoomed.filter(|(number, _)| *number + 1 == id as usize);
-            let zoom = zoom.map_or(1.0, |(_, zoom)| zoom);
+            let zoom = self.zooms[id as usize - 1];
             let truth = numbers(FOCAL * zoom, LENS);
             for (point, track) in self.points.iter().zip(&mut tracks) {
                 let seen = of.camera_from_world(*point);
@@ -168,7 +167,7 @@ impl Survey {
 
     /// By how much a photo's scale is off, a part of it, beside what the world is too long. A focal length that all have too long comes
     /// with ground that is too deep by as much, and does not count.
-    fn scale_off(&self, model: &Reconstruction, image: u32, zoom: f64) -> f64 {
+    fn scale_off(&self, model: &Reconstruction, image: u32) -> f64 {
         let points = model.points3d();
         let pairs: Vec<(DVec3, DVec3, f64)> = points
             .map(|(id, found)| {
@@ -181,7 +180,8 @@ impl Survey {
         let focal = model.camera(camera).unwrap().mean_focal();
         let center = point(&model.projection_center(image).unwrap());
         let scale = focal / to_truth.apply(center).z;
-        let right = FOCAL * zoom / self.centers[image as usize - 1].z;
+        let number = image as usize - 1;
+        let right = FOCAL * self.zooms[number] / self.centers[number].z;
         scale / right - 1.0
     }
 
@@ -307,7 +307,7 @@ fn a_zoomed_photo_gets_a_lens_of_its_own() {
         assert_eq!(centers.len(), count);
         let mut survey = Survey::new(centers, (0.0, 0.02), 3);
         survey.receivers = receivers;
-        survey.zoomed = (zoom != 1.0).then_some((5, zoom));
+        survey.zooms[5] = zoom;
         let photos = survey.photos();
         let mut model = survey.grown();
         let whose = Whose::of(&model, &photos);
@@ -319,11 +319,33 @@ fn a_zoomed_photo_gets_a_lens_of_its_own() {
         assert_eq!(model.cameras().len(), 1 + usize::from(zoom != 1.0));
         let ratio = focal(6) / focal(1) / zoom;
         assert!((ratio - 1.0).abs() < 0.001, "{count} {zoom}: {ratio}");
-        let off = [(1, 1.0), (6, zoom)].map(|(image, zoom)| survey.scale_off(&model, image, zoom));
+        let off = [1, 6].map(|image| survey.scale_off(&model, image));
         assert!(
             off.iter().all(|off| off.abs() < 0.001),
             "{count} {zoom}: {off:?}"
         );
+    }
+}
+
+/// Frames of a stabilised film: each is cropped otherwise, and no length is that of most.
+#[test]
+fn photos_that_are_all_cropped_otherwise_have_their_own() {
+    for receivers in [DVec3::splat(0.02), DVec3::new(2.0, 2.0, 5.0)] {
+        let centers = thirteen(&mut Noise(SplitMix(3)));
+        let mut survey = Survey::new(centers, (0.0, 0.02), 3);
+        survey.receivers = receivers;
+        for (number, zoom) in survey.zooms.iter_mut().enumerate() {
+            *zoom = 1.0 + 0.003 * ((number * 7) % 13) as f64;
+        }
+        let photos = survey.photos();
+        let mut model = survey.grown();
+        let whose = Whose::of(&model, &photos);
+        place(&mut model, &whose, &Progress::default()).unwrap();
+        let off: Vec<f64> = (1..=13)
+            .map(|image| survey.scale_off(&model, image))
+            .collect();
+        println!("{} {off:.4?}", model.cameras().len());
+        assert!(off.iter().all(|off| off.abs() < 0.002), "{off:?}");
     }
 }
 
@@ -338,7 +360,7 @@ fn a_receiver_that_is_wrong_and_sure_does_no_harm() {
     let mut model = survey.grown();
     let whose = Whose::of(&model, &photos);
     place(&mut model, &whose, &Progress::default()).unwrap();
-    let off = [1, 6].map(|image| survey.scale_off(&model, image, 1.0));
+    let off = [1, 6].map(|image| survey.scale_off(&model, image));
     assert!(off.iter().all(|off| off.abs() < 0.001), "{off:?}");
 }
 
@@ -353,7 +375,7 @@ fn where_no_length_stands_out_the_farthest_has_to_fit_better() {
         survey.points.truncate(60);
         survey.seen_to = 1.0;
         survey.receivers = DVec3::splat(0.02);
-        survey.zoomed = (zoom != 1.0).then_some((4, zoom));
+        survey.zooms[4] = zoom;
         let photos = survey.photos();
         let mut model = survey.grown();
         let whose = Whose::of(&model, &photos);
