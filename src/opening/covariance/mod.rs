@@ -256,8 +256,8 @@ pub fn deviation_of_pixels(
     Some((squares / free as f64).sqrt().max(1e-6))
 }
 
-/// As what a deviation of a pixel counts beside what else is known, where so many observations are of so many photos: see
-/// [`INDEPENDENT`].
+/// As what a deviation of a pixel counts beside what else is known, where so many observations are of so many photos: of a photo's
+/// 200 err each by itself, and more say no more.
 pub fn counted_deviation(pixel: f64, observations: usize, photos: usize) -> f64 {
     let each = observations as f64 / photos.max(1) as f64;
     pixel * (each / INDEPENDENT).max(1.0).sqrt()

@@ -344,7 +344,6 @@ fn photos_that_are_all_cropped_otherwise_have_their_own() {
         let off: Vec<f64> = (1..=13)
             .map(|image| survey.scale_off(&model, image))
             .collect();
-        println!("{} {off:.4?}", model.cameras().len());
         assert!(off.iter().all(|off| off.abs() < 0.002), "{off:?}");
     }
 }
