@@ -1,7 +1,8 @@
 //! Photos that were zoomed, cropped or stabilised, which their files do not say: under one lens with the others they bend the whole
 //! model. They are found by a trial in which each photo has a lens of its own: the focal lengths of photos of one camera then
-//! agree but for theirs. Where they do not agree, because small blocks tell no length well or many were zoomed, the farthest are tried one
-//! by one, and each has to make points and places fit better. With a lens of its own a photo that was not zoomed does no harm.
+//! agree but for theirs, and for those of photos at the rim that see little: without its own lens a photo that was zoomed makes points
+//! and places fit worse. Where lengths do not agree, because small blocks tell none well or many were zoomed, the farthest are tried
+//! one by one.
 //!
 //! Photos of one lens come out apart by 0.01 to 0.05 % (simulated, seen to 0.1 pixels), and by 0.1 and 0.3 % (Sceaux and Kermit's
 //! doll, eleven real photos each; medians).
@@ -31,6 +32,8 @@ const BETTER: f64 = 60.0;
 
 /// So many photos are tried one by one at most.
 const ONE_BY_ONE: usize = 4;
+/// So many of those that stand out are looked at once more, those that see least.
+const MOST_TESTED: usize = 8;
 
 /// What the trials adjust with: see [`Adjustment`].
 pub(super) struct Trials<'a> {
@@ -60,38 +63,23 @@ impl Trials<'_> {
         let mut apart: Vec<Apart> = (of_camera.values())
             .flat_map(|images| apart(&tried, images))
             .collect();
-        let clear = apart.iter().filter(|apart| apart.is_clear);
-        let clear: HashSet<u32> = clear.map(|apart| apart.image).collect();
-        if !clear.is_empty() || apart.is_empty() {
-            return Ok(clear);
-        }
-        apart.sort_by(|a, b| b.by.total_cmp(&a.by));
-        let pixel = counted_pixel(&tried);
-        // What does not fit is taken away: it counts as if it did just so.
-        let most = off_px(model).count();
-        let misfit = |model: &Reconstruction| {
-            let missing = most.saturating_sub(off_px(model).count());
-            self.misfit(model, pixel) + missing as f64 * (FARTHEST_PX / pixel).powi(2)
+        let trial = Trial {
+            trials: self,
+            model,
+            // What does not fit is taken away: it counts as if it did just so.
+            most: off_px(model).count(),
+            pixel: counted_pixel(&tried),
         };
-        let mut own = HashSet::new();
-        let mut least = misfit(&self.adjusted(model, &own)?);
-        // Frames of a stabilised film are all cropped otherwise: with a lens of its own for one the others bend it still.
-        let all: HashSet<u32> = apart.iter().map(|apart| apart.image).collect();
-        let is_of_all = misfit(&tried) + BETTER * (all.len() as f64) < least;
-        for next in apart.iter().take(ONE_BY_ONE) {
-            own.insert(next.image);
-            let with = misfit(&self.adjusted(model, &own)?);
-            if with + BETTER > least {
-                own.remove(&next.image);
-                break;
+        let clear = apart.iter().filter(|apart| apart.is_clear);
+        let clear: Vec<u32> = clear.map(|apart| apart.image).collect();
+        match (apart.is_empty(), clear.is_empty()) {
+            (true, _) => Ok(HashSet::new()),
+            (false, false) => trial.sure_of(clear),
+            (false, true) => {
+                apart.sort_by(|a, b| b.by.total_cmp(&a.by));
+                trial.one_by_one(&apart, &tried)
             }
-            least = with;
         }
-        let is_of_some = (1..ONE_BY_ONE).contains(&own.len());
-        Ok(match is_of_all && !is_of_some {
-            true => all,
-            false => own,
-        })
     }
 
     /// The model adjusted, with lenses of their own for these photos.
@@ -116,12 +104,78 @@ impl Trials<'_> {
         }
         Ok(tried)
     }
+}
 
-    /// Squares of how far points lie from where photos see them, and cameras from their places, over the deviations; `pixel` is that
-    /// of points.
-    fn misfit(&self, model: &Reconstruction, pixel: f64) -> f64 {
-        let points: f64 = off_px(model).map(|off| (off / pixel).powi(2)).sum();
-        let places = self.places.iter();
+/// How well a model fits with some lenses or others.
+struct Trial<'a> {
+    trials: &'a Trials<'a>,
+    model: &'a Reconstruction,
+    /// Observations before.
+    most: usize,
+    /// What a pixel counts.
+    pixel: f64,
+}
+
+impl Trial<'_> {
+    /// Of photos that stand out those without whose own lenses the model fits worse: one at the rim of a survey, which sees little,
+    /// stands out by chance, too.
+    fn sure_of(&self, mut clear: Vec<u32>) -> Result<HashSet<u32>, Fault> {
+        let seen = |&image: &u32| {
+            let image = self.model.image(image);
+            image.map_or(0, |image| {
+                let points = image.points2d().iter();
+                points.filter(|point| point.has_point3d()).count()
+            })
+        };
+        clear.sort_by_key(seen);
+        let mut own: HashSet<u32> = clear.iter().copied().collect();
+        let mut least = self.with(&own)?;
+        for image in clear.iter().take(MOST_TESTED) {
+            own.remove(image);
+            let without = self.with(&own)?;
+            if without > least + BETTER {
+                own.insert(*image);
+            } else {
+                least = without;
+            }
+        }
+        Ok(own)
+    }
+
+    /// Those of these photos, the farthest first, with whose own lenses the model fits better; `tried` is that in which each has one.
+    fn one_by_one(&self, apart: &[Apart], tried: &Reconstruction) -> Result<HashSet<u32>, Fault> {
+        let mut own = HashSet::new();
+        let mut least = self.with(&own)?;
+        // Frames of a stabilised film are all cropped otherwise: with a lens of its own for one the others bend it still.
+        let all: HashSet<u32> = apart.iter().map(|apart| apart.image).collect();
+        let is_of_all = self.misfit(tried) + BETTER * (all.len() as f64) < least;
+        for next in apart.iter().take(ONE_BY_ONE) {
+            own.insert(next.image);
+            let with = self.with(&own)?;
+            if with + BETTER > least {
+                own.remove(&next.image);
+                break;
+            }
+            least = with;
+        }
+        let is_of_some = (1..ONE_BY_ONE).contains(&own.len());
+        Ok(match is_of_all && !is_of_some {
+            true => all,
+            false => own,
+        })
+    }
+
+    /// The misfit with lenses of their own for these photos.
+    fn with(&self, own: &HashSet<u32>) -> Result<f64, Fault> {
+        Ok(self.misfit(&self.trials.adjusted(self.model, own)?))
+    }
+
+    /// Squares of how far points lie from where photos see them, and cameras from their places, over the deviations.
+    fn misfit(&self, model: &Reconstruction) -> f64 {
+        let missing = self.most.saturating_sub(off_px(model).count());
+        let off = off_px(model).chain(std::iter::repeat_n(FARTHEST_PX, missing));
+        let points: f64 = off.map(|off| (off / self.pixel).powi(2)).sum();
+        let places = self.trials.places.iter();
         let places = places.filter_map(|(&image, (place, deviation))| {
             let off = (model.projection_center(image)? - place).norm();
             Some((off / deviation).powi(2))

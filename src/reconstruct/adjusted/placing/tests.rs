@@ -327,6 +327,22 @@ fn a_zoomed_photo_gets_a_lens_of_its_own() {
     }
 }
 
+/// A photo at the rim that sees little stands out among lengths that agree to a thousandth, and was not zoomed.
+#[test]
+fn a_photo_at_the_rim_keeps_the_lens_of_all() {
+    for seed in 3..7 {
+        let mut centers = thirteen(&mut Noise(SplitMix(seed)));
+        centers.push(DVec3::new(68.0, 48.0, HEIGHT));
+        let mut survey = Survey::new(centers, (0.0, 0.02), seed);
+        survey.seen_to = 0.3;
+        let photos = survey.photos();
+        let mut model = survey.grown();
+        let whose = Whose::of(&model, &photos);
+        place(&mut model, &whose, &Progress::default()).unwrap();
+        assert_eq!(model.cameras().len(), 1, "{seed}");
+    }
+}
+
 /// Frames of a stabilised film: each is cropped otherwise, and no length is that of most.
 #[test]
 fn photos_that_are_all_cropped_otherwise_have_their_own() {
