@@ -140,21 +140,14 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::camera::{Camera, Distortion};
-    use crate::photo_set::{Place, SurveyPhoto};
+    use crate::camera::Camera;
+    use crate::photo_set::{Place, SurveyPhoto, camera_of_tests};
 
     fn camera(name: &str, focal_error: Option<f64>) -> SurveyCamera {
         SurveyCamera {
             camera: Camera {
                 name: name.to_owned(),
-                width: 4000,
-                height: 3000,
-                fx: 3000.4,
-                fy: 3000.4,
-                cx: 2000.0,
-                cy: 1500.0,
-                skew: 0.0,
-                distortion: Distortion::None,
+                ..camera_of_tests(3000.4)
             },
             focal_error,
             is_given: false,

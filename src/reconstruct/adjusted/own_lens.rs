@@ -63,6 +63,9 @@ impl Trials<'_> {
         let mut apart: Vec<Apart> = (of_camera.values())
             .flat_map(|images| apart(&tried, images))
             .collect();
+        if apart.is_empty() {
+            return Ok(HashSet::new());
+        }
         let trial = Trial {
             trials: self,
             model,
@@ -72,14 +75,11 @@ impl Trials<'_> {
         };
         let clear = apart.iter().filter(|apart| apart.is_clear);
         let clear: Vec<u32> = clear.map(|apart| apart.image).collect();
-        match (apart.is_empty(), clear.is_empty()) {
-            (true, _) => Ok(HashSet::new()),
-            (false, false) => trial.sure_of(clear),
-            (false, true) => {
-                apart.sort_by(|a, b| b.by.total_cmp(&a.by));
-                trial.one_by_one(&apart, &tried)
-            }
+        if !clear.is_empty() {
+            return trial.sure_of(clear);
         }
+        apart.sort_by(|a, b| b.by.total_cmp(&a.by));
+        trial.one_by_one(&apart, &tried)
     }
 
     /// The model adjusted, with lenses of their own for these photos.

@@ -59,7 +59,7 @@ pub(super) fn place(
         });
         !is_turned_over(looks)
     });
-    let (mut places, mut contradicting) = (HashMap::new(), HashMap::new());
+    let (mut places, mut in_trial) = (HashMap::new(), HashMap::new());
     if let Some(fitted) = &fitted {
         let similarity = &fitted.similarity;
         model.transform(&Sim3::new(
@@ -72,17 +72,17 @@ pub(super) fn place(
             let place = (to_vector(pair.target), deviation);
             if used {
                 places.insert(image, place);
-            } else if deviation <= Pair::SURE_OF_RECEIVERS {
-                // It may be the photo's focal length.
-                contradicting.insert(image, place);
+            }
+            // What contradicts one that is sure may be its photo's focal length.
+            if used || deviation <= Pair::SURE_OF_RECEIVERS {
+                in_trial.insert(image, place);
             }
         }
     }
     if whose.cameras().all(|(_, camera)| !camera.is_given) {
         progress.stage("comparing the photos' focal lengths");
-        contradicting.extend(&places);
         let trials = Trials {
-            places: &contradicting,
+            places: &in_trial,
             whose,
             progress,
         };

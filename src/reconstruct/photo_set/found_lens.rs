@@ -33,12 +33,8 @@ impl PhotoSet {
             let (photo, None) = (of.next()?, of.next()) else {
                 return None;
             };
-            let with_more = cameras
-                .clone()
-                .filter(|&other| taken(other).nth(1).is_some());
-            let others = with_more
-                .clone()
-                .find(|&other| same(at, other) == Some(true))?;
+            let mut with_more = (cameras.clone()).filter(|&other| taken(other).nth(1).is_some());
+            let others = with_more.find(|&other| same(at, other) == Some(true))?;
             let [own, others] = [at, others].map(|at| model.cameras[at].fx);
             let longer = (own / others - 1.0) * 100.0;
             Some(format!("{} {longer:+.1} %", photo.name))
@@ -85,23 +81,9 @@ mod tests {
     use glam::{DMat3, DVec3};
 
     use super::*;
-    use crate::camera::{Distortion, Pose};
+    use crate::camera::Pose;
     use crate::formats::PosedPhoto;
-    use crate::photo_set::SurveyPhoto;
-
-    fn camera(focal: f64) -> Camera {
-        Camera {
-            name: "DJI FC6310R".to_owned(),
-            width: 4000,
-            height: 3000,
-            fx: focal,
-            fy: focal,
-            cx: 2000.0,
-            cy: 1500.0,
-            skew: 0.0,
-            distortion: Distortion::None,
-        }
-    }
+    use crate::photo_set::{SurveyPhoto, camera_of_tests as camera};
 
     /// What is said of the lenses of photos 0.jpg, 1.jpg, ..., which are of these cameras of the model, where all state so long a
     /// focal length.
@@ -164,12 +146,14 @@ mod tests {
         assert_eq!(said(Some(3000.0), false, &[3000.0, 3050.0], &[0, 1]), "");
     }
 
-    /// 4000 pixels at 28 600 are 8 degrees.
+    /// 4000 pixels at 28 600 are 8 degrees; 12 begin at 2000 / tan 6 degrees, 19 029.
     #[test]
     fn a_telescope_is_said_where_nothing_is_stated() {
         let narrow = said(None, false, &[28_600.0], &[0, 0]);
         assert!(narrow.contains("sees 8 degrees across"), "{narrow}");
         assert_eq!(said(None, false, &[9000.0], &[0, 0]), "");
+        assert_ne!(said(None, false, &[19_100.0], &[0, 0]), "");
+        assert_eq!(said(None, false, &[18_900.0], &[0, 0]), "");
         assert_eq!(said(Some(28_600.0), false, &[28_600.0], &[0, 0]), "");
     }
 }

@@ -106,6 +106,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
+    use crate::photo_set::camera_of_tests as camera;
 
     /// Photos that state a focal length of 3000 px to 2 %.
     fn photos() -> PhotoSet {
@@ -120,20 +121,6 @@ mod tests {
             warnings: Vec::new(),
             origin: DVec3::ZERO,
             count: 0,
-        }
-    }
-
-    fn camera(focal: f64) -> Camera {
-        Camera {
-            name: "DJI FC6310R".to_owned(),
-            width: 4000,
-            height: 3000,
-            fx: focal,
-            fy: focal,
-            cx: 2000.0,
-            cy: 1500.0,
-            skew: 0.0,
-            distortion: Distortion::None,
         }
     }
 

@@ -309,3 +309,19 @@ fn guessed(photo: &PhotoMetadata) -> SurveyCamera {
         is_given: false,
     }
 }
+
+/// One of 4000 x 3000 px without distortion.
+#[cfg(test)]
+pub(crate) fn camera_of_tests(focal: f64) -> Camera {
+    Camera {
+        name: "DJI FC6310R".to_owned(),
+        width: 4000,
+        height: 3000,
+        fx: focal,
+        fy: focal,
+        cx: 2000.0,
+        cy: 1500.0,
+        skew: 0.0,
+        distortion: Distortion::None,
+    }
+}

@@ -9,11 +9,11 @@ use glam::{DMat3, DVec2};
 
 use super::*;
 use crate::adjusted::model_files;
-use crate::camera::{Camera, Distortion, Pose};
+use crate::camera::Pose;
 use crate::formats::read_project;
 use crate::georeference::similarity_of;
 use crate::opening::covariance::{Deviations, Known, deviations};
-use crate::photo_set::{PhotoSet, Place, SurveyCamera, SurveyPhoto};
+use crate::photo_set::{PhotoSet, Place, SurveyCamera, SurveyPhoto, camera_of_tests};
 
 /// The camera's, pixels.
 const FOCAL: f64 = 3000.0;
@@ -95,17 +95,7 @@ impl Survey {
         PhotoSet {
             photos: photos.collect(),
             cameras: vec![SurveyCamera {
-                camera: Camera {
-                    name: "test".to_owned(),
-                    width: 4000,
-                    height: 3000,
-                    fx: focal,
-                    fy: focal,
-                    cx: 2000.0,
-                    cy: 1500.0,
-                    skew: 0.0,
-                    distortion: Distortion::None,
-                },
+                camera: camera_of_tests(focal),
                 focal_error: Some(self.stated.1),
                 is_given: false,
             }],
@@ -324,6 +314,22 @@ fn a_zoomed_photo_gets_a_lens_of_its_own() {
             off.iter().all(|off| off.abs() < 0.001),
             "{count} {zoom}: {off:?}"
         );
+    }
+}
+
+/// Less than half a percent is what photos of one lens come out apart by, too.
+#[test]
+fn a_lens_of_its_own_begins_at_half_a_percent() {
+    for (zoom, lenses) in [(1.004, 1), (1.006, 2)] {
+        let centers = thirteen(&mut Noise(SplitMix(3)));
+        let mut survey = Survey::new(centers, (0.0, 0.02), 3);
+        survey.receivers = DVec3::splat(0.02);
+        survey.zooms[5] = zoom;
+        let photos = survey.photos();
+        let mut model = survey.grown();
+        let whose = Whose::of(&model, &photos);
+        place(&mut model, &whose, &Progress::default()).unwrap();
+        assert_eq!(model.cameras().len(), lenses, "{zoom}");
     }
 }
 
