@@ -197,11 +197,16 @@ mod tests {
     fn scale() -> PhotoScale {
         let point = DVec3::ZERO;
         let distance = 1.0;
+        let on_surface = CornerOutcome::OnSurface {
+            distance,
+            point,
+            longest_edge: 0.1,
+        };
         let outcomes = [
-            CornerOutcome::OnSurface { distance, point },
+            on_surface,
             CornerOutcome::OnGround { distance, point },
             CornerOutcome::Nowhere,
-            CornerOutcome::OnSurface { distance, point },
+            on_surface,
         ];
         let pixels = [(0.0, 0.0), (1000.0, 0.0), (1000.0, 700.0), (0.0, 700.0)];
         PhotoScale {

@@ -66,8 +66,7 @@ pub struct Footprint {
 }
 
 impl Footprint {
-    /// Meets the rays of a footprint with the surface of a caster; the corners' longest triangle edges
-    /// beside it, in the contract's order. Rays that miss the surface are met with the ground, as those
+    /// Meets the rays of a footprint with the surface of a caster. Rays that miss the surface are met with the ground, as those
     /// of the corners are.
     ///
     /// # Errors
@@ -80,7 +79,7 @@ impl Footprint {
         ground: &mut GroundFinder<'_>,
         caster: &mut Caster<'_>,
         progress: &Progress,
-    ) -> Result<(Self, [Option<f64>; 4]), FieldError> {
+    ) -> Result<Self, FieldError> {
         let pixels = pixels(camera, detail);
         let directions: Vec<_> = (pixels.iter())
             .map(|&pixel| image.direction(camera, pixel))
@@ -97,6 +96,7 @@ impl Footprint {
                 (Ok(_), Some(hit)) => CornerOutcome::OnSurface {
                     distance: hit.distance,
                     point: hit.point,
+                    longest_edge: hit.longest_edge,
                 },
                 (Ok(direction), None) => {
                     let ray = Ray {
@@ -109,16 +109,13 @@ impl Footprint {
             points.push(FootprintPoint { pixel, outcome });
         }
         let per_edge = detail.per_edge.max(1) as usize;
-        let edges =
-            std::array::from_fn(|corner| Some(hits.get(corner * per_edge)?.as_ref()?.longest_edge));
         let grid = points.split_off((4 * per_edge).min(points.len()));
-        let footprint = Self {
+        Ok(Self {
             outline: points,
             grid,
             columns: detail.columns.max(1),
             rows: detail.rows.max(1),
-        };
-        Ok((footprint, edges))
+        })
     }
 
     /// How far the surface within the footprint is from the plane of the corner points: the root mean

@@ -147,6 +147,8 @@ pub enum CornerOutcome {
         distance: f64,
         /// In the world.
         point: DVec3,
+        /// The longest edge of the triangle there, world units: what is long bridges what no photo saw.
+        longest_edge: f64,
     },
     /// It missed the surface and met the plane z = ground.
     OnGround {
@@ -282,6 +284,7 @@ impl PhotoScale {
                 Some(hit) => CornerOutcome::OnSurface {
                     distance: hit.t,
                     point: hit.point,
+                    longest_edge: hit.longest_edge,
                 },
                 None => {
                     let z = ground.under(camera, pose)?;

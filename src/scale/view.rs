@@ -58,7 +58,7 @@ impl ViewFacts {
             Some(hit) => (Some(hit.t), false),
             None => (Some(pose.center.z - ground.under(camera, pose)?), true),
         };
-        let (footprint, edges) = Footprint::compute(
+        let footprint = Footprint::compute(
             camera,
             pose,
             image,
@@ -81,14 +81,12 @@ impl ViewFacts {
                 .map(|direction| direction.dot(normal).abs().min(1.0).asin().to_degrees())
                 .min_by(f64::total_cmp)
         });
-        let is_on_surface = |index: usize| {
-            matches!(
-                scale.corners[index].outcome,
-                CornerOutcome::OnSurface { .. }
-            )
-        };
-        let triangle_edges =
-            std::array::from_fn(|index| edges[index].filter(|_| is_on_surface(index)));
+        let triangle_edges = scale.corners.map(|corner| match corner.outcome {
+            CornerOutcome::OnSurface { longest_edge, .. } => Some(longest_edge),
+            CornerOutcome::OnGround { .. } | CornerOutcome::Nowhere | CornerOutcome::NoRay(_) => {
+                None
+            }
+        });
         let footprint_size = (corners.len() == 4).then(|| {
             (0..4)
                 .map(|i| corners[i].distance(corners[(i + 1) % 4]))

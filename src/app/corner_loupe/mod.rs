@@ -33,7 +33,9 @@ impl CornerTriangle {
     /// The one next to a corner point; `None` where the corner has no point.
     fn of(corner: &Corner, surface: &Surface) -> Result<Option<Self>, SurfaceError> {
         let (point, distance) = match corner.outcome {
-            CornerOutcome::OnSurface { point, distance }
+            CornerOutcome::OnSurface {
+                point, distance, ..
+            }
             | CornerOutcome::OnGround { point, distance } => (point, distance),
             CornerOutcome::Nowhere | CornerOutcome::NoRay(_) => return Ok(None),
         };
@@ -89,6 +91,7 @@ mod tests {
         let on = corner(CornerOutcome::OnSurface {
             distance: 10.0,
             point: DVec3::new(3.0, 1.0, 2.0),
+            longest_edge: 5.0,
         });
         let found = CornerTriangle::of(&on, &surface).unwrap().unwrap();
         assert!(found.off < 1e-9 && (found.longest_edge() - 32_f64.sqrt()).abs() < 1e-12);

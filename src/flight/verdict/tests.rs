@@ -24,6 +24,7 @@ fn on_surface() -> CornerOutcome {
     CornerOutcome::OnSurface {
         distance: 1.0,
         point: DVec3::ZERO,
+        longest_edge: 0.1,
     }
 }
 

@@ -16,10 +16,10 @@
 //! to 0.82), and taken somewhat larger, for benches, which have most of the bridges and need more of both. docs/scales.md's
 //! coverage is of other piles (`benches/coverage.rs`).
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
+use super::draws::Draws;
 use super::holes::Line;
-use crate::scale::FittedScale;
 use crate::scale::field::ScaleField;
 
 /// Edges of so many times the median one are no bridges.
@@ -44,26 +44,119 @@ pub(super) struct Bridged {
     pub(super) spread: f64,
 }
 
-/// Of the line through a field over a cloud, with the photo's plane (`surface_error::plane_of`).
-pub(super) fn of_bridges(field: &ScaleField, fitted: &FittedScale, plane: DVec3) -> Bridged {
-    let rows = field.grid.rows;
-    let places = field.grid.cells();
-    let pixels = places.map(|(column, row)| {
-        Some(Pixel {
-            down: (f64::from(row) + 0.5) / f64::from(rows),
-            scale: field.scale_at(column, row)?,
-            depth: field.depth_at(column, row)?,
-            edge: field.longest_edge_at(column, row)?,
-            off_plane: field.depth_at(column, row)? * plane.dot(field.direction_at(column, row)?)
-                - 1.0,
-        })
-    });
-    let pixels: Vec<Option<Pixel>> = pixels.collect();
-    of_pixels(
-        &pixels,
-        field.grid.columns as usize,
-        [fitted.top, fitted.bottom],
-    )
+/// Which triangles of a cloud bridge what no photo saw, as one photo shows them.
+#[derive(Debug, Clone)]
+pub(super) struct Bridges {
+    /// Row by row; those without a scale `None`.
+    pixels: Vec<Option<Pixel>>,
+    columns: usize,
+    /// The median of their longest edges, world units.
+    median: f64,
+    /// The most that is hidden, a share of the depth.
+    most: f64,
+}
+
+impl Bridges {
+    /// In the field of a photo over a cloud, with the photo's plane (`surface_error::plane_of`).
+    pub(super) fn in_field(field: &ScaleField, plane: DVec3) -> Self {
+        let rows = field.grid.rows;
+        let pixels = field.grid.cells().map(|(column, row)| {
+            let depth = field.depth_at(column, row)?;
+            Some(Pixel {
+                down: (f64::from(row) + 0.5) / f64::from(rows),
+                scale: field.scale_at(column, row)?,
+                depth,
+                edge: field.longest_edge_at(column, row)?,
+                off_plane: depth * plane.dot(field.direction_at(column, row)?) - 1.0,
+            })
+        });
+        Self::among(pixels.collect(), field.grid.columns as usize)
+    }
+
+    fn among(pixels: Vec<Option<Pixel>>, columns: usize) -> Self {
+        let seen = || pixels.iter().flatten();
+        let mut edges: Vec<f64> = seen().map(|pixel| pixel.edge).collect();
+        let squares: f64 = seen().map(|pixel| pixel.off_plane.powi(2)).sum();
+        let count = edges.len();
+        let (median, most) = match count {
+            // Of nothing that is seen nothing is a bridge.
+            0 => (f64::INFINITY, 0.0),
+            _ => (
+                *edges.select_nth_unstable_by(count / 2, f64::total_cmp).1,
+                MOST * (squares / count as f64).sqrt(),
+            ),
+        };
+        Self {
+            pixels,
+            columns,
+            median,
+            most,
+        }
+    }
+
+    /// What a triangle with this longest edge at this depth hides in the mean, a share of the depth; 0 of those that are no
+    /// bridges.
+    fn hidden(&self, edge: f64, depth: f64) -> f64 {
+        let over = (edge - USUAL * self.median).max(0.0);
+        (HIDDEN * over / depth).min(self.most)
+    }
+
+    /// How much deeper a single place on such a triangle lies, a share of the depth, as a draw: 0 of those that are no
+    /// bridges, which take none.
+    pub(super) fn draw(&self, edge: f64, depth: f64, draws: &mut Draws) -> f64 {
+        let hidden = self.hidden(edge, depth);
+        match hidden > 0.0 {
+            true => hidden * (1.0 + SPREAD / HIDDEN * draws.normal()),
+            false => 0.0,
+        }
+    }
+
+    /// What the triangle at a place of the photo hides, shares of its depth, in the mean and as a standard deviation around
+    /// it. The place is from (0, 0) at the photo's upper left to (1, 1) at its lower right; the cell of the fit's grid that
+    /// it lies in stands for it.
+    pub(super) fn at(&self, place: DVec2) -> [f64; 2] {
+        let rows = self.pixels.len() / self.columns.max(1);
+        // `as` saturates.
+        let cell = |at: f64, count: usize| ((at * count as f64) as usize).min(count - 1);
+        let hidden = (rows > 0)
+            .then(|| cell(place.y, rows) * self.columns + cell(place.x, self.columns))
+            .and_then(|index| *self.pixels.get(index)?)
+            .map_or(0.0, |pixel| self.hidden(pixel.edge, pixel.depth));
+        [hidden, SPREAD / HIDDEN * hidden]
+    }
+
+    /// What they do to the ends of the best line, pixels per world unit.
+    pub(super) fn on_line(&self, [top, bottom]: [f64; 2]) -> Bridged {
+        let mut whole = Line::default();
+        for pixel in self.pixels.iter().flatten() {
+            whole.add(pixel.down, 0.0);
+        }
+        // What each pixel does to top and bottom; nothing where it shows no bridge.
+        let by_pixel = self.pixels.iter().map(|pixel| {
+            let pixel = pixel.as_ref()?;
+            let share = self.hidden(pixel.edge, pixel.depth);
+            let [to_top, to_bottom] = whole.weights(pixel.down);
+            let ends = [to_top / top, to_bottom / bottom].map(|end| end * share * pixel.scale);
+            (pixel.edge > USUAL * self.median).then_some(ends)
+        });
+        let mut by_pixel: Vec<Option<[f64; 2]>> = by_pixel.collect();
+        let (mut too_large, mut squares) = ([0.0; 2], 0.0);
+        for first in 0..by_pixel.len() {
+            let Some([top, bottom]) = take_bridge(&mut by_pixel, self.columns, first) else {
+                continue;
+            };
+            too_large = [too_large[0] + top, too_large[1] + bottom];
+            squares += (top * top + bottom * bottom) / 2.0;
+        }
+        // Of one row there is no line, and no fitted scale either.
+        if !squares.is_finite() {
+            return Bridged::default();
+        }
+        Bridged {
+            too_large,
+            spread: SPREAD / HIDDEN * squares.sqrt(),
+        }
+    }
 }
 
 /// A pixel with a scale.
@@ -79,50 +172,6 @@ struct Pixel {
     edge: f64,
     /// Its depth over the plane's, less 1.
     off_plane: f64,
-}
-
-/// Of pixels row by row, those without a scale `None`.
-fn of_pixels(pixels: &[Option<Pixel>], columns: usize, line: [f64; 2]) -> Bridged {
-    let seen = || pixels.iter().flatten();
-    let mut edges: Vec<f64> = seen().map(|pixel| pixel.edge).collect();
-    if edges.is_empty() {
-        return Bridged::default();
-    }
-    let count = edges.len();
-    let median = *edges.select_nth_unstable_by(count / 2, f64::total_cmp).1;
-    let squares: f64 = seen().map(|pixel| pixel.off_plane.powi(2)).sum();
-    let most = MOST * (squares / count as f64).sqrt();
-    let mut whole = Line::default();
-    for pixel in seen() {
-        whole.add(pixel.down, 0.0);
-    }
-    // What each pixel does to top and bottom; nothing where it shows no bridge.
-    let by_pixel = pixels.iter().map(|pixel| {
-        let pixel = pixel.as_ref()?;
-        let over = pixel.edge - USUAL * median;
-        let share = (HIDDEN * over / pixel.depth).min(most);
-        let [to_top, to_bottom] = whole.weights(pixel.down);
-        let [top, bottom] = line;
-        let ends = [to_top / top, to_bottom / bottom].map(|end| end * share * pixel.scale);
-        (over > 0.0).then_some(ends)
-    });
-    let mut by_pixel: Vec<Option<[f64; 2]>> = by_pixel.collect();
-    let (mut too_large, mut squares) = ([0.0; 2], 0.0);
-    for first in 0..by_pixel.len() {
-        let Some([top, bottom]) = take_bridge(&mut by_pixel, columns, first) else {
-            continue;
-        };
-        too_large = [too_large[0] + top, too_large[1] + bottom];
-        squares += (top * top + bottom * bottom) / 2.0;
-    }
-    // Of one row there is no line, and no fitted scale either.
-    if !squares.is_finite() {
-        return Bridged::default();
-    }
-    Bridged {
-        too_large,
-        spread: SPREAD / HIDDEN * squares.sqrt(),
-    }
 }
 
 /// The sum over the bridge that a place belongs to: all pixels of bridges that hang together with it by their sides.
@@ -157,6 +206,10 @@ mod tests {
     use super::*;
 
     const ROWS: usize = 400;
+
+    fn of_pixels(pixels: &[Option<Pixel>], columns: usize, line: [f64; 2]) -> Bridged {
+        Bridges::among(pixels.to_vec(), columns).on_line(line)
+    }
 
     /// Longest edges of 1, and of 4 where `bridged` says so of a column and a row.
     fn pixels(columns: usize, bridged: impl Fn(usize, usize) -> bool) -> Vec<Option<Pixel>> {
@@ -230,5 +283,38 @@ mod tests {
         });
         assert_eq!(of_pixels(&pixels, 1, [50.0, 50.0]).too_large, [0.0; 2]);
         assert_eq!(of_pixels(&[], 1, [50.0, 50.0]), Bridged::default());
+    }
+
+    /// A place on an edge of 4 where others have 1, at the depth 20: deeper by a quarter of the edge in the mean, over what is
+    /// usual, and seldom nearer than half of that. Edges as others have take no draw.
+    #[test]
+    fn a_place_on_a_bridge_lies_deeper() {
+        let bridges = Bridges::among(pixels(2, |_, row| row > 300), 2);
+        let mut draws = Draws::new(1);
+        let drawn: Vec<f64> = (0..20_000)
+            .map(|_| bridges.draw(4.0, 20.0, &mut draws))
+            .collect();
+        let count = drawn.len() as f64;
+        let mean = drawn.iter().sum::<f64>() / count;
+        let squares: f64 = drawn.iter().map(|share| (share - mean).powi(2)).sum();
+        // 0.5 of 4 - 2, and 0.85 of it, over 20.
+        assert!((mean - 0.05).abs() < 0.002, "{mean}");
+        assert!(((squares / count).sqrt() - 0.085).abs() < 0.002);
+        let mut untouched = Draws::new(1);
+        let mut asked = Draws::new(1);
+        for edge in [1.0, 2.0] {
+            assert_eq!(bridges.draw(edge, 20.0, &mut asked), 0.0);
+        }
+        assert_eq!(asked.normal(), untouched.normal());
+        // Row 300 of 400 is the last without.
+        for (down, hidden) in [(0.752, 0.0), (0.753, 0.05), (1.0, 0.05)] {
+            let [mean, spread] = bridges.at(DVec2::new(0.7, down));
+            assert!((mean - hidden).abs() < 1e-12, "{down}: {mean}");
+            assert!((spread - 1.7 * hidden).abs() < 1e-12, "{down}: {spread}");
+        }
+        assert_eq!(
+            Bridges::among(Vec::new(), 2).draw(4.0, 20.0, &mut draws),
+            0.0
+        );
     }
 }

@@ -4,11 +4,12 @@
 //! another stone, and no derivative says so: so it is cast again, at the triangles around. What the
 //! surface adds at the place that it meets is drawn from how far the points around the corner lie from
 //! what their neighbours predict, each as likely as the photo shows of it: at a rim some of them are far. Some places lie in gaps
-//! besides, in which no point is (`unseen`).
+//! besides, in which no point is (`unseen`), and one on a triangle that bridges what no photo saw lies deeper (`bridges`).
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use super::LEAST_POINTS;
+use super::bridges::Bridges;
 use super::draws::{Draws, deviation, interval_of};
 use super::stratified::stratified;
 use super::surface_error::{DepthError, root_mean_square, tan_of_incidence};
@@ -66,6 +67,9 @@ struct Parts {
     world: bool,
 }
 
+/// What the depths of a photo's points do not tell.
+type Between<'a> = (Unseen, Option<&'a Bridges>);
+
 /// A corner with what is around it.
 struct Around {
     /// Its pixel.
@@ -74,6 +78,8 @@ struct Around {
     direction: DVec3,
     /// Its depth.
     depth: f64,
+    /// The longest edge of the triangle that it met, world units.
+    longest_edge: f64,
     /// The triangles near its ray, in camera axes; `None` where no ray will be cast.
     near: Option<Surface>,
     /// How far places like those of the points around it are off.
@@ -88,9 +94,10 @@ impl CornerDraws {
     pub(super) fn new(
         photo: &UncertainPhoto<'_>,
         plane: DVec3,
-        (depths, unseen): (&[DepthError], Unseen),
+        (depths, between): (&[DepthError], Between<'_>),
         surface: &Surface,
     ) -> Self {
+        let (unseen, _) = between;
         let stated = &photo.errors;
         // Fewer say nothing of what lies between points; what is stated of each counts all the same.
         let is_seen = depths.len() >= LEAST_POINTS;
@@ -105,7 +112,12 @@ impl CornerDraws {
         let mut draws = Draws::new(SEED);
         let corners: [Option<Around>; 4] = std::array::from_fn(|index| {
             let corner = &photo.scale.corners[index];
-            let CornerOutcome::OnSurface { distance, .. } = corner.outcome else {
+            let CornerOutcome::OnSurface {
+                distance,
+                longest_edge,
+                ..
+            } = corner.outcome
+            else {
                 // Nobody knows how far the ground is from what the ray would have met.
                 return None;
             };
@@ -122,6 +134,7 @@ impl CornerDraws {
                 pixel: corner.pixel,
                 direction,
                 depth,
+                longest_edge,
                 near: near.flatten(),
                 roughness: errors.root_mean_square(),
                 errors: errors.times(unseen.wider_beside()),
@@ -129,7 +142,7 @@ impl CornerDraws {
             })
         });
         let mut of_parts = |parts: Parts| -> [Vec<f64>; 4] {
-            edges_under(photo, (&corners, unseen), &shared, parts, &mut draws)
+            edges_under(photo, (&corners, between), &shared, parts, &mut draws)
         };
         let nothing = Parts {
             pose: false,
@@ -340,7 +353,7 @@ fn triangles_near(
 /// Draws of the four edges' scales under some of the errors; empty where an end is not known.
 fn edges_under(
     photo: &UncertainPhoto<'_>,
-    (corners, unseen): (&[Option<Around>; 4], Unseen),
+    (corners, (unseen, bridges)): (&[Option<Around>; 4], Between<'_>),
     shared: &[Shared],
     parts: Parts,
     draws: &mut Draws,
@@ -381,7 +394,10 @@ fn edges_under(
                 let error = corner.errors.draw(draws).unwrap_or(0.0);
                 let stated = drawn.surface[index];
                 let gap = unseen.gap(corner.tan_of_incidence, draws) * corner.roughness;
-                along = along * (1.0 + error + gap) + stated / direction.length();
+                let bridged = bridges.map_or(0.0, |bridges| {
+                    bridges.draw(corner.longest_edge, corner.depth, draws)
+                });
+                along = along * (1.0 + error + gap + bridged) + stated / direction.length();
             }
             ends[index] = Some(origin + direction * along);
         }

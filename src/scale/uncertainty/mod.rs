@@ -4,7 +4,7 @@
 //! Four corners hang on four places of a rough surface, so their rays are cast again under drawn errors
 //! (`corners`); thousands of pixels behind the best line see the pile as a whole, of which derivatives
 //! tell all (`line`); where the surface ends inside the photo, what is not seen of it is drawn from what
-//! is (`holes`), and where triangles bridge what no photo saw, it is deeper (`bridges`); one pixel hangs on
+//! is (`holes`), and where triangles bridge what no photo saw, it is deeper (`bridges`, for corners, too); one pixel hangs on
 //! one place as well (`pixels`). What the surface adds comes from the cloud itself (`surface_error`), and more where
 //! the deep between fragments has no points (`unseen`), or points of one place do not agree (`point_noise`). Draws follow from one seed: the same on every run.
 
@@ -20,7 +20,7 @@ mod stratified;
 mod surface_error;
 mod unseen;
 
-use self::bridges::{Bridged, of_bridges};
+use self::bridges::{Bridged, Bridges};
 use self::corners::CornerDraws;
 pub use self::draws::Draws;
 use self::line::LineErrors;
@@ -147,12 +147,14 @@ impl Uncertainty {
         let errors = DepthErrors::of(photo.field, plane, surface);
         let quiet = errors.without_noise();
         let unseen = Unseen::of(&quiet);
-        let corners = CornerDraws::new(photo, plane, (&errors.each, unseen), surface);
+        // Triangles that came with a mesh are what they are.
+        let bridges = (surface.is_cloud()).then(|| Bridges::in_field(photo.field, plane));
+        let between = (unseen, bridges.as_ref());
+        let corners = CornerDraws::new(photo, plane, (&errors.each, between), surface);
         let line = photo.fitted.map(|fitted| {
-            let bridged = match surface.is_cloud() {
-                true => of_bridges(photo.field, fitted, plane),
-                false => Bridged::default(),
-            };
+            let bridged = bridges.as_ref().map_or_else(Bridged::default, |bridges| {
+                bridges.on_line([fitted.top, fitted.bottom])
+            });
             LineErrors::new(
                 photo,
                 fitted,

@@ -5,17 +5,20 @@
 //! place that is parallel to the photo's best plane (`line.rs` has the derivatives: m·X = 1, turned by w
 //! and moved by v the camera sees m + m × w + m (m·v)).
 //!
-//! What the line counts of holes in the cloud, of triangles that bridge them (`holes.rs`, `bridges.rs`) and of unusual noise
-//! is of the photo as a whole: here a hole's rim is as unsure as the points around it, and no more.
+//! Under a triangle that bridges what no photo saw it is deeper, and less sure (`bridges.rs`). What the line counts of holes in
+//! the cloud (`holes.rs`) and of unusual noise is of the photo as a whole: here a hole's rim is as unsure as the points
+//! around it, and no more.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::Interval;
+use super::bridges::Bridges;
 use super::draws::interval_of_scale;
 use super::surface_error::{DepthError, DepthErrors, plane_of, root_mean_square};
 use super::unseen::Unseen;
 use crate::camera::Camera;
-use crate::scale::field::ScaleField;
+use crate::jobs::Progress;
+use crate::scale::field::{FieldGrid, ScaleField};
 use crate::scale::{ImageKind, StatedErrors};
 use crate::surface::Surface;
 
@@ -23,7 +26,7 @@ use crate::surface::Surface;
 const ACROSS: usize = 16;
 
 /// How sure the scale is at each pixel of a photo.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct PixelErrors {
     stated: StatedErrors,
     /// Best through the field, in camera axes: m·X = 1.
@@ -32,6 +35,8 @@ pub struct PixelErrors {
     /// photo shows too few points.
     roughness: Option<Vec<f64>>,
     unseen: Unseen,
+    /// Of a surface that came with its faces there are none.
+    bridges: Option<Bridges>,
 }
 
 impl PixelErrors {
@@ -51,12 +56,21 @@ impl PixelErrors {
             let of_square = |within: &Vec<DepthError>| root_mean_square(within).unwrap_or(of_all);
             squares.iter().map(of_square).collect()
         });
+        // Only a coarse field knows its triangles.
+        let bridges = surface.is_cloud().then(|| {
+            let (camera, pose, image) = (field.camera(), field.pose(), field.image());
+            let grid = FieldGrid::of_fit(camera);
+            let progress = Progress::default();
+            let coarse = ScaleField::compute(camera, pose, image, grid, surface, &progress).ok()?;
+            Some(Bridges::in_field(&coarse, plane))
+        });
         let is_stated = *stated != StatedErrors::default();
         (is_stated || roughness.is_some()).then_some(Self {
             stated: *stated,
             plane,
             roughness,
             unseen,
+            bridges: bridges.flatten(),
         })
     }
 
@@ -83,14 +97,21 @@ impl PixelErrors {
         let pixel = field.grid.pixel(field.camera(), column, row);
         let roughness = self.roughness.as_ref();
         let roughness = roughness.and_then(|of| of.get(square(field.camera(), pixel)).copied());
+        let size = DVec2::new(
+            f64::from(field.camera().width),
+            f64::from(field.camera().height),
+        );
+        let bridges = self.bridges.as_ref();
+        let [bridged, of_bridge] = bridges.map_or([0.0; 2], |bridges| bridges.at(pixel / size));
         let is_known = roughness.is_some() || stated.surface.is_some();
         let of_surface = is_known.then(|| {
             let of_each = stated.surface.unwrap_or(0.0) / (depth * direction.length());
-            (roughness.unwrap_or(0.0) * self.unseen.wider()).powi(2) + of_each * of_each
+            let of_roughness = roughness.unwrap_or(0.0) * self.unseen.wider();
+            of_roughness.powi(2) + of_each * of_each + of_bridge * of_bridge
         });
         let parts = [of_pose, of_focal, of_world, of_surface];
         let share = parts.iter().flatten().sum::<f64>().sqrt();
-        let too_large = self.unseen.bias * roughness.unwrap_or(0.0);
+        let too_large = self.unseen.bias * roughness.unwrap_or(0.0) + bridged;
         Some(interval_of_scale(
             scale * (1.0 - too_large),
             scale * share,
@@ -107,7 +128,7 @@ fn rows(camera: &Camera) -> usize {
 }
 
 /// The square that a pixel lies in.
-fn square(camera: &Camera, pixel: glam::DVec2) -> usize {
+fn square(camera: &Camera, pixel: DVec2) -> usize {
     let place = |at: f64, size: u32, count: usize| {
         // `as` saturates.
         ((at / f64::from(size) * count as f64) as usize).min(count - 1)

@@ -544,3 +544,49 @@ fn a_bridge_counts_in_the_interval() {
     assert_eq!(holds(&cloud), [true; 2]);
     assert!(!holds(&cloud.to_mesh().unwrap())[1]);
 }
+
+/// A terrace 6 high of which no photo saw the foot: triangles go from its rim to where the floor has points, 8 farther on, and
+/// the photo's right corners lie on them. There the true depth is 20, the floor's, and a pixel shows fx / 20.
+#[test]
+fn a_corner_on_a_bridge_may_lie_as_deep_as_the_floor() {
+    let mut random = SplitMix(9);
+    let mut uniform = move || random.unit();
+    let points: Vec<DVec3> = (0..20_000)
+        .map(|_| {
+            let (x, y) = ((uniform() - 0.5) * 50.0, (uniform() - 0.5) * 30.0);
+            let height = if x < 0.0 { 6.0 } else { 0.0 };
+            DVec3::new(x, y, height + 0.02 * uniform())
+        })
+        .filter(|point| point.x < 0.0 || point.x > 8.0)
+        .collect();
+    let cloud = Surface::new(Cloud {
+        points,
+        ..Cloud::default()
+    })
+    .unwrap();
+    let camera = camera(Distortion::None);
+    let pose = Pose {
+        center: DVec3::new(-6.5, 0.0, 20.0),
+        ..nadir(20.0)
+    };
+    let truth = 1000.0 / 20.0;
+    let holds = |surface: &Surface| {
+        let (image, errors) = (ImageKind::Undistorted, StatedErrors::default());
+        let found = compute(surface, &camera, &pose, image, errors);
+        let scale = found.scale.scale.right.unwrap();
+        assert!(scale > 1.1 * truth, "{scale}");
+        let right = found.uncertainty.unwrap().right.unwrap();
+        let grid = FieldGrid::of_pixels(&camera);
+        let progress = Progress::default();
+        let field = ScaleField::compute(&camera, &pose, image, grid, surface, &progress).unwrap();
+        let pixels = PixelErrors::new(&field, &errors, surface).unwrap();
+        let at_corner = pixels.at(&field, 1279, 0).unwrap();
+        // What lies on the terrace is as sure as it was: 14 below the camera, to a centimetre.
+        let on_top = pixels.at(&field, 300, 360).unwrap();
+        let of_top = 1000.0 / (14.0 - 0.01);
+        assert!(on_top.low < of_top && of_top < on_top.high && on_top.width_percent() < 0.5);
+        [right, at_corner].map(|end| end.low <= truth && truth <= end.high)
+    };
+    assert_eq!(holds(&cloud), [true; 2]);
+    assert_eq!(holds(&cloud.to_mesh().unwrap()), [false; 2]);
+}
