@@ -265,16 +265,9 @@ impl State {
     /// Leaves the flight on the screen, unless something would be lost: then asks first.
     pub(crate) fn leave(&mut self, leaving: Leaving) {
         let writes = leaving == Leaving::Quit && self.work.is_writing();
-        let is_again = matches!(
-            &leaving,
-            Leaving::Read {
-                named: Named::Again,
-                ..
-            }
-        );
         let is_lost = match &self.open {
             // What was added stays.
-            Some(open) if is_again => open.is_changed() && open.is_edited(),
+            Some(open) if leaving.comes_back() => open.is_changed() && open.is_edited(),
             _ => self.is_changed(),
         };
         if is_lost || writes {
@@ -322,7 +315,7 @@ impl State {
     /// Goes on with what was held back.
     pub(crate) fn go_on(&mut self, held_back: HeldBack) {
         match held_back {
-            HeldBack::Leave(leaving) if self.has_lost_points() => {
+            HeldBack::Leave(leaving) if self.has_lost_points() && !leaving.comes_back() => {
                 self.held_back = Some(HeldBack::Points(leaving));
             }
             HeldBack::Leave(Leaving::Quit) | HeldBack::Points(Leaving::Quit)
@@ -341,6 +334,7 @@ impl State {
             let before = open.selected;
             select(open);
             if open.selected != before {
+                self.take_note(before);
                 let reviews = self.reviewed_flight().is_some();
                 if let Some(open) = self.open.as_mut().filter(|_| reviews) {
                     open.show_reason();

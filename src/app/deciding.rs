@@ -44,6 +44,7 @@ impl State {
             return 0;
         }
         let mut accepted = 0;
+        let mut decided = Vec::new();
         let mut settings = open.settings();
         for (place, photo) in open.review.photos().enumerate() {
             let wanted = wanted(place, photo);
@@ -52,13 +53,18 @@ impl State {
             if can && photo.goes_along(Along::Trusted) != wanted {
                 let decision = photo.decision_to(wanted).map(|decision| Decision {
                     date: today(),
+                    note: one_line(open.note_of(place)),
                     ..decision
                 });
+                if decision.is_some() {
+                    decided.push(place);
+                }
                 accepted += usize::from(wanted && photo.is_doubtful());
                 settings.decide(photo.name(), decision);
             }
         }
         self.set_settings(settings);
+        self.forget_notes(&decided);
         accepted
     }
 
@@ -85,6 +91,19 @@ impl State {
         let mut settings = open.settings();
         settings.decide(reviewed.name(), decision);
         self.set_settings(settings);
+        self.forget_notes(&[photo]);
+    }
+
+    /// What was typed of these photos is in their decisions, or was taken back with them.
+    fn forget_notes(&mut self, decided: &[usize]) {
+        // Then nothing was decided.
+        if self.changes_would_be_lost() {
+            return;
+        }
+        if let Some(open) = &mut self.open {
+            let notes = &mut open.reviewing.notes;
+            notes.retain(|photo, _| !decided.contains(photo));
+        }
     }
 }
 

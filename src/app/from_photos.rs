@@ -154,6 +154,8 @@ pub struct FromPhotos {
     pub form: FromPhotosForm,
     /// What lies in the folder that is typed; `None` until it has been looked at.
     pub found: Option<FoundPhotos>,
+    /// Whether the run begins once that was looked at: Start was clicked right behind a field.
+    pub(crate) starts_then: bool,
     /// Which COLMAP is installed; `None` until it has been looked for.
     pub colmap: Option<InstalledColmap>,
     /// What the last run came to, until another folder is named.

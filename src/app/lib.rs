@@ -79,7 +79,7 @@ use flight::Verdict;
 use frame_times::{FrameTimes, Phase};
 use kept_aside::KeptAside;
 use open_flight::OpenFlight;
-use panels::{Inspector, PhotoPanel, Scrolled};
+use panels::{Inspector, LastFocus, PhotoPanel, Scrolled};
 use photo_view::Middle;
 use size_distributions::{DistributionCommand, Page, PasteForm, ResultTab};
 use state::{Leaving, Severity};
@@ -111,6 +111,8 @@ pub struct App {
     from_field: Vec<Command>,
     /// That field, which is entered again behind them, and where keys went then.
     left_field: Option<(egui::Id, Keys)>,
+    /// Where Tab goes on.
+    last_focus: LastFocus<Keys>,
     times: FrameTimes,
 }
 
@@ -149,6 +151,7 @@ impl App {
             was_focused: true,
             from_field: Vec::new(),
             left_field: None,
+            last_focus: LastFocus::default(),
             times,
         }
     }
@@ -241,6 +244,7 @@ impl eframe::App for App {
         self.times.begin();
         self.hold_back_closing(context);
         self.keep_keys_from_behind(context);
+        self.last_focus.go_on(&keys_of(&self.state), context);
         let pressed = actions::pressed(&self.state, context);
         if !pressed.is_empty()
             && context.text_edit_focused()
@@ -422,6 +426,7 @@ impl eframe::App for App {
         {
             ui.ctx().memory_mut(|memory| memory.request_focus(field));
         }
+        self.last_focus.take(keys_of(&self.state), ui.ctx());
         self.times.end(Phase::Commands);
     }
 

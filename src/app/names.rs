@@ -2,6 +2,7 @@
 //! their names' ends, with the whole of it in the hover text. And numbers, which are never cut.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use egui::{FontId, Label, Response, RichText, TextStyle, Ui, WidgetInfo};
 
@@ -85,6 +86,16 @@ fn cut(letters: &[char], keep: usize) -> String {
     if let Some(longer) = with_number {
         (head, tail) = (keep - longer, longer);
     }
+    if let Some(number) = number_of_file(letters).filter(|number| whole(number.start)) {
+        let from_number = letters.len() - number.start;
+        if (tail..=keep).contains(&from_number) {
+            (head, tail) = (keep - from_number, from_number);
+        } else if tail < from_number && number.len() <= keep {
+            // Every photo ends in "jpg".
+            let number = letters[number].iter();
+            return [&DOTS].into_iter().chain(number).chain([&DOTS]).collect();
+        }
+    }
     while head > 0 && !whole(head) {
         head -= 1;
     }
@@ -96,7 +107,29 @@ fn cut(letters: &[char], keep: usize) -> String {
     head.chain([&DOTS]).chain(tail).collect()
 }
 
-/// The text with each number, its interval and its per cent sign on one line, wherever the text is broken:
+/// The last number in the name of a file, before its ending: what tells photos apart.
+fn number_of_file(letters: &[char]) -> Option<Range<usize>> {
+    let dot = letters.iter().rposition(|letter| *letter == '.')?;
+    let (name, ending) = (&letters[..dot], &letters[dot + 1..]);
+    let is_file = (3..=4).contains(&ending.len()) && ending.iter().all(|c| c.is_ascii_alphabetic());
+    let last = name.iter().rposition(char::is_ascii_digit)?;
+    let before = name[..last].iter().rposition(|c| !c.is_ascii_digit());
+    is_file.then_some(before.map_or(0, |before| before + 1)..last + 1)
+}
+
+/// What stands behind numbers, apart from what begins with "px/".
+const UNITS: [&str; 17] = [
+    "mm", "cm", "m", "in", "ft", "us-ft", "px", "mm²", "cm²", "m²", "in²", "ft²", "m³", "ft³",
+    "ha", "min", "h",
+];
+
+/// Whether a word is the unit of a number before it, whatever sign of the sentence is behind it.
+fn is_unit(word: &str) -> bool {
+    let word = word.trim_end_matches([',', '.', ';', ':', ')']);
+    word.starts_with("px/") || UNITS.contains(&word)
+}
+
+/// The text with each number, its unit, its interval and its per cent sign on one line, wherever the text is broken:
 /// "19.9 ±" at the end of a row is no number, nor is "± 0.4" at the begin of the next.
 pub(crate) fn unbroken(text: &str) -> String {
     let begins_with_number = |word: &str| {
@@ -115,7 +148,9 @@ pub(crate) fn unbroken(text: &str) -> String {
         let is_interval = begins_with_number(word) && opens(next)
             || opens(word) && *next == "to"
             || *word == "to" && place > 0 && opens(words[place - 1]);
-        let is_joined = next.starts_with(['±', '%']) || *word == "±" || is_interval;
+        let number = word.trim_start_matches(['(', '±', '−']);
+        let has_unit = is_unit(next) && number.parse::<f64>().is_ok();
+        let is_joined = next.starts_with(['±', '%']) || *word == "±" || is_interval || has_unit;
         whole.push(if is_joined { '\u{a0}' } else { ' ' });
     }
     whole
@@ -169,6 +204,12 @@ mod tests {
                 "from 2 to 3 photos (9 of 12)",
             ),
             ("P80 ± 2 %; less", "P80~±~2~%; less"),
+            (
+                "an edge of 0.012 m, 3 in all",
+                "an edge of 0.012~m, 3~in all",
+            ),
+            ("TOP  50 cm · 25.6 px/cm", "TOP  50~cm · 25.6~px/cm"),
+            ("2 marks of m", "2 marks of m"),
             ("", ""),
         ] {
             assert_eq!(unbroken(text), whole.replace('~', "\u{a0}"));
@@ -189,6 +230,14 @@ mod tests {
         // Photos of one folder.
         assert_eq!(cut_to("images/100_7103.JPG", 12), "imag…7103.JPG");
         assert_eq!(cut_to("12345678", 4), "…");
+        // They all end in their ending: the number before it is what is wanted.
+        assert_eq!(cut_to("IMG_0123.jpg", 9), "I…0123.jpg");
+        assert_eq!(cut_to("IMG_0123.jpg", 8), "…0123.jpg");
+        assert_eq!(cut_to("IMG_0123.jpg", 6), "…0123…");
+        assert_eq!(cut_to("IMG_0123.jpg", 3), "I…pg");
+        // That is half a number.
+        assert_eq!(cut_to("x-7.25.jpg", 5), "x…jpg");
+        assert_eq!(cut_to("DJI_20240506_0042_V.JPG", 12), "DJ…0042_V.JPG");
         // Letters of any script are letters.
         assert_eq!(cut_to("矿石爆破照片", 4), "矿石…照片");
         assert_eq!(cut_to("фотография", 4), "фо…ия");

@@ -50,6 +50,7 @@ impl State {
             }
             open.look_at_control();
             if open.selected != before {
+                self.take_note(before);
                 self.load_preview();
             }
         }

@@ -29,6 +29,10 @@ impl State {
     /// Does a step.
     pub(crate) fn review_step(&mut self, step: ReviewStep) {
         let was_reviewing = self.reviewed_flight().is_some();
+        if matches!(step, ReviewStep::Next | ReviewStep::Back) {
+            let before = self.open.as_ref().and_then(|open| open.selected);
+            self.take_note(before);
+        }
         let Some(open) = &mut self.open else {
             return;
         };
@@ -49,7 +53,10 @@ impl State {
                 open.show_reason();
                 self.load_tint();
             }
-            ReviewStep::Note(note) => open.reviewing.note = Some(note),
+            ReviewStep::Note(photo, note) => {
+                open.reviewing.notes.insert(photo, note);
+            }
+            ReviewStep::TakeNote(photo) => self.take_note(Some(photo)),
             ReviewStep::WriteNote => {
                 self.context
                     .memory_mut(|memory| memory.request_focus(note_field()));
@@ -75,14 +82,16 @@ impl State {
     }
 
     fn decide_and_go_on(&mut self, kind: DecisionKind) {
-        let Some((photo, reviewed)) = self.open.as_ref().and_then(|open| open.selected_review())
-        else {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let Some((photo, reviewed)) = open.selected_review() else {
             return;
         };
         if !reviewed.is_doubtful() {
             return;
         }
-        let note = self.note_of_review();
+        let note = open.note_of(photo).to_owned();
         self.decide(photo, Some((kind, note)));
         let Some(open) = &mut self.open else {
             return;
@@ -92,22 +101,22 @@ impl State {
             .photo(photo)
             .is_some_and(|p| !p.waits_for_decision());
         if is_decided {
-            open.reviewing.note = None;
             let waits = open.review_progress().waiting > 0;
             let next = open.next_doubtful(false).filter(|_| waits);
             self.review_photo(next);
         }
     }
 
-    /// What is in the field of the note: what was typed, else what is saved.
-    pub(crate) fn note_of_review(&self) -> String {
-        let open = self.open.as_ref();
-        let typed = open.and_then(|open| open.reviewing.note.clone());
-        let saved = || {
-            let (_, photo) = open?.selected_review()?;
-            Some(photo.decision?.note.clone())
+    /// Takes the note that was typed of a photo with its decision, where one holds: its field is left, or another
+    /// photo is selected. Without a decision it waits for one.
+    pub(crate) fn take_note(&mut self, photo: Option<usize>) {
+        let Some((photo, open)) = photo.zip(self.open.as_ref()) else {
+            return;
         };
-        typed.or_else(saved).unwrap_or_default()
+        let noted = open.noted_anew(photo);
+        if noted.is_some() {
+            self.decide(photo, noted);
+        }
     }
 
     /// Brings the photo back whose decision was undone or done again.

@@ -13,7 +13,7 @@ use crate::fault::Fault;
 use crate::flight::{Along, Limits, Review};
 use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::opening::Opened;
+use crate::opening::{Opened, apart_from_photos};
 use crate::scale::Onto;
 
 #[derive(Debug, Args)]
@@ -67,6 +67,9 @@ pub(super) fn export_of(
     opened: &Opened,
     progress: &Progress,
 ) -> Result<(Answer, Review), String> {
+    for folder in exports::export_folders(&arguments.to) {
+        apart_from_photos(&folder, &opened.photo_files).map_err(|error| error.to_string())?;
+    }
     let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
     let review = opened.review(&Limits::default(), progress);

@@ -6,6 +6,9 @@ use clap::{Args, ValueEnum};
 use serde_json::Value;
 
 use super::Answer;
+use crate::exports::crs_in_words;
+use crate::fault::one_line;
+use crate::geodesy::Crs;
 use crate::jobs::Progress;
 use crate::opening;
 
@@ -36,9 +39,13 @@ pub(super) fn info(arguments: &InfoArguments, progress: &Progress) -> Result<Ans
 /// The top level of an `info` value, a line each; of lists how long they are.
 fn info_text(value: &Value) -> String {
     let mut text = String::new();
+    let are_photos_alone = value["kind"] == "photos";
+    // Over time: a trajectory's and a recording's, which state no coordinate system, are of no photos yet.
+    let are_poses_alone = value["kind"] == "poses" && value.get("crs").is_none();
     for (key, value) in value.as_object().into_iter().flatten() {
         let shown = match value {
             Value::Null => "not stated".to_owned(),
+            Value::String(text) if key == "crs" => system(text),
             Value::String(text) => text.clone(),
             Value::Array(list) if key == "warnings" => {
                 for warning in list {
@@ -58,12 +65,37 @@ fn info_text(value: &Value) -> String {
                 }
                 continue;
             }
+            Value::Array(list) if key == "cameras" && are_photos_alone => {
+                for camera in list {
+                    let name = camera["name"].as_str().unwrap_or("not stated");
+                    let (width, height) = (&camera["width"], &camera["height"]);
+                    let photos = &camera["photos"];
+                    text +=
+                        &format!("camera: {name}, {width} x {height} pixels, photos: {photos}\n");
+                }
+                continue;
+            }
+            Value::Array(list) if key == "photos" && are_poses_alone => {
+                text += &format!("poses: {}\n", list.len());
+                continue;
+            }
             Value::Array(list) => list.len().to_string(),
             other => in_words(other),
         };
         text += &format!("{}: {shown}\n", key.replace('_', " "));
     }
     text
+}
+
+/// A coordinate system in a line: its code, of one in WKT the name, and the code where there is one.
+fn system(text: &str) -> String {
+    let name = one_line(&crs_in_words(Some(text)));
+    match Crs::understand(text) {
+        Ok(crs) if crs.name().starts_with("EPSG:") && crs.name() != name => {
+            format!("{name} ({})", crs.name())
+        }
+        _ => name,
+    }
 }
 
 /// A value with what is in it, in a line.
@@ -79,5 +111,58 @@ fn in_words(value: &Value) -> String {
             parts.collect::<Vec<_>>().join(", ")
         }
         other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    /// EPSG:32633 as GDAL writes it (WKT 1, shortened by its datum's authority codes).
+    const UTM_33: &str = r#"PROJCS["WGS 84 / UTM zone 33N",
+        GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],
+            PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],
+        PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",15],
+        PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",0],
+        UNIT["metre",1],AUTHORITY["EPSG","32633"]]"#;
+
+    #[test]
+    fn a_system_is_a_name_and_a_code_in_one_line() {
+        let text = info_text(&json!({"kind": "cloud", "crs": UTM_33}));
+        assert_eq!(
+            text,
+            "crs: WGS 84 / UTM zone 33N (EPSG:32633)\nkind: cloud\n"
+        );
+        // One that no code is known of has its name alone.
+        let own = UTM_33.replace("WGS 84 / UTM zone 33N", "Pit grid");
+        let own = own.replace(",AUTHORITY[\"EPSG\",\"32633\"]", "");
+        let own = own.replace("500000", "500123");
+        let own = info_text(&json!({"crs": format!("\u{feff}{own}\n")}));
+        assert_eq!(own, "crs: Pit grid\n");
+        let code = info_text(&json!({"crs": "EPSG:32633"}));
+        assert_eq!(code, "crs: EPSG:32633\n");
+    }
+
+    #[test]
+    fn photos_that_cannot_be_placed_are_told_by_their_cameras() {
+        let camera = json!({"name": "DJI FC6310R", "width": 5472, "height": 3648, "photos": 2});
+        let photos =
+            json!({"kind": "photos", "cameras": [camera], "photos": ["a", "b"], "positions": 0});
+        assert_eq!(
+            info_text(&photos),
+            "camera: DJI FC6310R, 5472 x 3648 pixels, photos: 2\nkind: photos\nphotos: 2\npositions: 0\n"
+        );
+    }
+
+    /// Those of poses.csv are of photos.
+    #[test]
+    fn poses_over_time_are_no_photos() {
+        let poses = json!({"kind": "poses", "photos": ["a", "b"], "messages": 7});
+        assert!(info_text(&poses).contains("poses: 2\n"));
+        assert!(!info_text(&poses).contains("photos"));
+        let of_photos = json!({"kind": "poses", "crs": null, "photos": ["a", "b"]});
+        assert!(info_text(&of_photos).contains("photos: 2\n"));
     }
 }

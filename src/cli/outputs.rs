@@ -47,9 +47,8 @@ impl OutputArguments {
     ) -> Result<Outputs<'_>, String> {
         match self.ending() {
             Some((file, ending)) if is_another(&ending) || is_numbers(&ending) => {
-                let what = format!("text for people is written here, and nothing as .{ending}");
-                let fault = Fault::new(what, "end the name in .txt");
-                Err(FileError::new(file, fault).to_string())
+                let (written, remedy) = ("text for people", "end the name in .txt");
+                Err(ends_otherwise(file, &ending, written, remedy))
             }
             _ => self.outputs(inputs),
         }
@@ -92,11 +91,9 @@ impl AnswerArguments {
     ) -> Result<Outputs<'_>, String> {
         match self.output.ending() {
             Some((file, ending)) if self.format.is_none() && is_another(&ending) => {
-                let fault = Fault::new(
-                    format!("nothing is written as .{ending} here"),
-                    "end the name in .csv, .json or .txt (a table for people), or say --format",
-                );
-                Err(FileError::new(file, fault).to_string())
+                let written = "CSV, JSON or a table for people";
+                let remedy = "end the name in .csv, .json or .txt (the table), or say --format";
+                Err(ends_otherwise(file, &ending, written, remedy))
             }
             _ => self.output.outputs(inputs),
         }
@@ -145,6 +142,12 @@ impl AnswerArguments {
             false => left,
         })
     }
+}
+
+/// What is written into a file whose name ends otherwise than that says.
+pub(super) fn ends_otherwise(file: &Path, ending: &str, written: &str, remedy: &str) -> String {
+    let what = format!("{written} is written here, and nothing as .{ending}");
+    FileError::new(file, Fault::new(what, remedy)).to_string()
 }
 
 /// Whether a program that a file's ending calls would find what it does not read.

@@ -11,7 +11,7 @@ use image::{DynamicImage, RgbaImage};
 use super::Answer;
 use super::flight_arguments::FlightArguments;
 use super::on_surface::places::place;
-use super::outputs::{Force, Outputs};
+use super::outputs::{Force, Outputs, ends_otherwise};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::files::{Kind, marked_png};
@@ -201,12 +201,13 @@ pub(super) fn render(arguments: &RenderArguments, progress: &Progress) -> Result
     outputs.read(&opened.read)?;
     let ending = arguments.output.extension().unwrap_or_default();
     if !ending.is_empty() && !ending.eq_ignore_ascii_case("png") {
-        let what = format!(
-            "a PNG is written here, and nothing as .{}",
-            ending.display()
-        );
-        let fault = Fault::new(what, "end the name in .png");
-        return Err(FileError::new(&arguments.output, fault).to_string());
+        let (file, ending) = (&arguments.output, ending.to_string_lossy());
+        return Err(ends_otherwise(
+            file,
+            &ending,
+            "a PNG",
+            "end the name in .png",
+        ));
     }
     let path = &arguments.flight.flight;
     let compared = compared(arguments, &opened, progress).map_err(|error| error.to_string())?;

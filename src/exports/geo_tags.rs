@@ -38,7 +38,7 @@ pub(crate) fn projected(crs: Option<&str>) -> Option<Crs> {
 }
 
 /// What to call a coordinate system: its code, the name that its WKT has, or that none is stated.
-pub(crate) fn crs_in_words(crs: Option<&str>) -> String {
+pub fn crs_in_words(crs: Option<&str>) -> String {
     match crs {
         None => "own frame, no coordinate system is stated".to_owned(),
         Some(text) if text.contains('[') => {

@@ -51,6 +51,7 @@ pub use fragments::{
     PhotoOfSizes, PhotoOutlined, curves_csv, distribution_csv, fragment_tables, label_png,
     labels_png, left_over, outlined_files,
 };
+pub use geo_tags::crs_in_words;
 pub use map_places::MapPlaces;
 pub use masks::{
     CocoFile, CvatFile, OUTLINE_ENDINGS, fragments_geojson, labelme_json, labels_tiff,
@@ -92,5 +93,6 @@ pub use size_distributions::{
     figure_of_fits, figure_png, figure_svg, fit_csv, fit_json, fit_table, points_of_curves_csv,
 };
 pub use split_desktop::{
-    ExportRequest, ExportSummary, Provenance, Replace, export_for_split_desktop, other_flight_in,
+    ExportRequest, ExportSummary, Provenance, Replace, export_folders, export_for_split_desktop,
+    other_flight_in,
 };

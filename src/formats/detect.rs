@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use crate::cameras::json_camera;
-use crate::candidates::{Contents, only_below, several};
+use crate::candidates::{meant_in, only_below, several};
 use crate::clouds::ept;
 use crate::fault::Fault;
 use crate::files::{FileError, open_file, unreadable_folder};
@@ -226,7 +226,7 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
         };
         return Err(FileError::new(path, fault));
     }
-    let mut meant = Contents::of(path).meant;
+    let mut meant = meant_in(path);
     match (meant.pop(), meant.is_empty()) {
         (Some((package, path)), true) => return Ok(Kind::Reconstruction(package, path)),
         (Some(last), false) => {

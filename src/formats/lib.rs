@@ -43,10 +43,12 @@ pub use clouds::{CloudFile, CloudPiece, CloudPieces};
 pub use detect::{CloudFormat, FAILED, Kind, MODEL, UNFINISHED, detect};
 pub use files::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use masks::{MaskFile, Masks, OutlinedPhoto, read_masks};
-pub use meant::candidates;
+pub use meant::{candidates, is_of_photos};
 pub use missions::{MissionFile, read_mission};
 pub use packages::Package;
-pub use packages::drone_photos::{Cameras as PhotoCameras, expected_deviation};
+pub use packages::drone_photos::{
+    Cameras as PhotoCameras, PhotosAlone, expected_deviation, read_alone as read_photos,
+};
 pub use packages::pose_covariance::PoseCovariance;
 pub use packages::reconstruction::{
     ImageUnit, MeasuredPosition, Observation, Origin, PosedPhoto, Project, Reconstruction, Sizes,

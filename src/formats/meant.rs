@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use crate::candidates::{Candidate, Contents, Found, below, counted};
+use crate::candidates::{Candidate, Contents, Found, below, counted, meant_in};
 use crate::detect::{Kind, detect};
+use crate::packages::Package;
 
 /// The reconstructions that `path` may stand for, with their photos' counts: those of a folder itself,
 /// else those in its folders, one and two levels down. A single one is what opening `path` opens,
@@ -20,13 +21,18 @@ pub fn candidates(path: &Path) -> Vec<Candidate> {
     if flight.is_file() {
         return counted(vec![(None, flight)]);
     }
-    let found = Contents::of(path).meant;
+    let found = meant_in(path);
     let found = if found.is_empty() {
         below(path)
     } else {
         found.into_iter().map(|(p, path)| (Some(p), path)).collect()
     };
     counted(found)
+}
+
+/// Whether photos lie in a folder itself, and no reconstruction; flights in its folders make no difference.
+pub fn is_of_photos(folder: &Path) -> bool {
+    matches!(Contents::of(folder).meant[..], [(Package::Photos, _)])
 }
 
 fn of_kind(kind: Kind) -> Option<Found> {

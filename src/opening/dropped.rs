@@ -7,7 +7,7 @@ use crate::fault::Fault;
 use crate::files::FileError;
 use crate::formats::missions::no_flight_but_mission;
 use crate::formats::tables::size_distributions::no_flight_but_sizes;
-use crate::formats::{Kind, Package, detect};
+use crate::formats::{Kind, Package, detect, is_of_photos};
 
 /// How several of them are called.
 const PHOTOS: &str = "folders of photos";
@@ -30,7 +30,14 @@ impl Dropped {
         let mut dropped = Self::default();
         let mut photos = None;
         for path in paths {
-            let (part, name) = match detect(path)? {
+            let kind = match detect(path) {
+                // Flights in its folders are none that are meant beside one.
+                Err(_) if paths.len() > 1 && is_of_photos(path) => {
+                    Kind::Reconstruction(Package::Photos, path.clone())
+                }
+                kind => kind?,
+            };
+            let (part, name) = match kind {
                 Kind::Cloud(_) => (&mut dropped.options.surface, "surfaces"),
                 Kind::Reconstruction(Package::Photos, _) => (&mut photos, PHOTOS),
                 Kind::Flight(_) | Kind::Reconstruction(..) => (&mut dropped.flight, "flights"),

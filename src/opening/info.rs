@@ -1,18 +1,21 @@
 //! What the program understood of a file (contract, section 6), as JSON.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde_json::{Value, json};
 
 use crate::camera::{Camera, Pose};
+use crate::fault::Fault;
 use crate::flight::Flight;
 use crate::formats::packages::ros;
 use crate::formats::packages::ros::Recording;
+use crate::formats::photos::photo_metadata::PhotoMetadata;
 use crate::formats::poses::trajectory::Trajectory;
 use crate::formats::{
     CloudFile, DistributionColumns, FileError, ImageUnit, Kind, MissionFile, Origin, Package,
-    PosesFile, Reconstruction, Sizes, detect, read_camera, read_cloud, read_mission, read_poses,
-    read_project, read_size_distributions, read_trajectory,
+    PhotosAlone, PosesFile, Reconstruction, Sizes, detect, read_camera, read_cloud, read_mission,
+    read_photos, read_poses, read_project, read_size_distributions, read_trajectory,
 };
 use crate::fragmentation::DistributionSet;
 use crate::geometry::Bounds;
@@ -39,6 +42,15 @@ pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
         }
         Kind::Mission => mission_info(&read_mission(path)?),
         Kind::Reconstruction(Package::Ros, path) => recording_info(&ros::read(&path, progress)?),
+        Kind::Reconstruction(Package::Photos, path) => {
+            let PhotosAlone { photos, project } = read_photos(&path, progress)?;
+            match project {
+                Ok(project) => reconstruction_info(&project.reconstruction),
+                // Not one of them is a photo.
+                Err(fault) if photos.is_empty() => return Err(FileError::new(&path, fault)),
+                Err(fault) => photos_info(&photos, &fault),
+            }
+        }
         Kind::Reconstruction(..) => {
             let project = read_project(path, progress)?;
             let mut info = reconstruction_info(&project.reconstruction);
@@ -165,6 +177,33 @@ fn reconstruction_info(reconstruction: &Reconstruction) -> Value {
         "warnings": reconstruction.warnings,
         "cameras": cameras,
         "photos": photos.collect::<Vec<_>>(),
+    })
+}
+
+/// Photos of which none can be placed, and why.
+fn photos_info(photos: &[(String, PhotoMetadata)], fault: &Fault) -> Value {
+    let name = |photo: &PhotoMetadata| {
+        let is_named = photo.make.is_some() || photo.model.is_some();
+        is_named.then(|| photo.camera_name())
+    };
+    let mut cameras: BTreeMap<(Option<String>, (u32, u32)), usize> = BTreeMap::new();
+    for (_, photo) in photos {
+        *cameras.entry((name(photo), photo.size)).or_default() += 1;
+    }
+    let cameras = cameras.iter().map(|((name, (width, height)), count)| {
+        json!({"name": name, "width": width, "height": height, "photos": count})
+    });
+    let each = photos.iter().map(|(photo, metadata)| {
+        let (width, height) = metadata.size;
+        json!({"photo": photo, "camera": name(metadata), "width": width, "height": height})
+    });
+    let positions = photos.iter().filter(|(_, photo)| photo.place.is_some());
+    json!({
+        "kind": "photos",
+        "cameras": cameras.collect::<Vec<_>>(),
+        "photos": each.collect::<Vec<_>>(),
+        "positions": positions.count(),
+        "warnings": [format!("it is no flight: {fault}")],
     })
 }
 
@@ -317,8 +356,44 @@ fn photo_value(name: &str, camera: Option<&str>, pose: &Pose) -> Value {
 mod tests {
     use std::fs;
 
+    use exif::Tag;
+    use fragscale_test_data::jpeg;
+    use image::RgbImage;
+
     use super::*;
     use crate::Dropped;
+
+    /// Frames of a film, screenshots, photos whose positions a program took away.
+    #[test]
+    fn photos_without_positions_are_said_to_be_that() {
+        let folder = tempfile::tempdir().unwrap();
+        let camera = [
+            jpeg::text(Tag::Make, "DJI"),
+            jpeg::text(Tag::Model, "FC6310R"),
+        ];
+        for name in ["a.jpg", "b.jpg"] {
+            let photo = jpeg::jpeg((40, 30), &camera, &[]);
+            fs::write(folder.path().join(name), photo).unwrap();
+        }
+        let screenshot = folder.path().join("c.png");
+        RgbImage::new(8, 6).save(&screenshot).unwrap();
+        let said = info(folder.path(), &Progress::default()).unwrap();
+        assert_eq!(said["kind"], "photos");
+        assert_eq!(said["photos"].as_array().map(Vec::len), Some(3));
+        assert_eq!(said["positions"], 0);
+        let cameras = json!([
+            {"name": null, "width": 8, "height": 6, "photos": 1},
+            {"name": "DJI FC6310R", "width": 40, "height": 30, "photos": 2},
+        ]);
+        assert_eq!(said["cameras"], cameras);
+        let why = said["warnings"][0].as_str().unwrap();
+        assert!(why.contains("it is no flight") && why.contains("3 of 3 have no position"));
+        let one = info(&screenshot, &Progress::default()).unwrap();
+        assert_eq!(one["photos"][0]["photo"], "c.png");
+        // What is no photo is an error as ever.
+        fs::write(&screenshot, "x").unwrap();
+        assert!(info(&screenshot, &Progress::default()).is_err());
+    }
 
     /// Home and one photo, in Mission Planner's lines; whatever the file is called.
     #[test]

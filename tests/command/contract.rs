@@ -236,7 +236,7 @@ fn the_output_file_is_whole_or_not_there() {
     let book = folder.path().join("scales.xlsx");
     let refused = error_of(&["scales", path, "-o", book.to_str().expect("UTF-8")]);
     assert!(
-        refused.contains("nothing is written as .xlsx here; end the name in .csv"),
+        refused.contains("is written here, and nothing as .xlsx; end the name in .csv"),
         "{refused}"
     );
     assert!(!book.exists());

@@ -38,6 +38,25 @@ fn totals_and_averages_of_rows_and_columns() {
     assert!(text.contains("1 time is missing, in no total and no average: 'spheres' of"));
 }
 
+/// The table of the manual, as it stands there: 12.5 and 45 minutes in the one method, 10 and none in the other.
+#[test]
+fn the_manuals_table_is_read() {
+    let manual = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/sizes.md");
+    let manual = fs::read_to_string(manual).expect("the manual");
+    let mut boxes = manual
+        .split("```\n")
+        .filter(|text| text.starts_with("step,"));
+    let table = boxes.next().expect("a table of times");
+    let file = written(table);
+    let text = crate::common::stdout_of(&["effort", path(&file), "--format", "json"]);
+    let found: Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(found["columns"], json!(["scale object", "point cloud"]));
+    assert_eq!(found["column_sums"][0]["total"], 57.5);
+    assert_eq!(found["column_sums"][1]["total"], 10.0);
+    assert_eq!(found["steps"][1]["missing"], 1);
+    assert_eq!(found["all"]["total"], 67.5);
+}
+
 /// What the command writes as CSV it reads again; the sums are computed anew.
 #[test]
 fn its_own_table_is_read_again() {

@@ -47,12 +47,43 @@ fn a_mission_is_told_and_written_for_another() {
     // A take-off whose numbers were swapped.
     let far = crate::common::error_of(&["mission", &path("bench.waypoints"), "--take-off", "7,50"]);
     assert!(far.contains("the latitude comes first"), "{far}");
-    // By haversines on a sphere of 6371 km; half a degree of latitude is 55.6 km of it, 0.4 are 44.5.
-    assert!(far.contains("a stop lies 6221 km from there"), "{far}");
-    let north = ["mission", &path("bench.waypoints"), "--take-off"];
-    let far = crate::common::error_of(&[&north[..], &["50.5001,7.0001"]].concat());
-    assert!(far.contains("a stop lies 56 km from there"), "{far}");
-    crate::common::stdout_of(&[&north[..], &["50.4001,7.0001"]].concat());
+    // By haversines on a sphere of 6371 km, of whose latitude a degree is 111.2 km.
+    assert!(
+        far.contains("the nearest stop lies 6221 km from there"),
+        "{far}"
+    );
+    let at = ["mission", &path("bench.waypoints"), "--take-off"];
+    for (place, said) in [
+        ("7,50", "swapped, 50,7 lies near them: the latitude"),
+        (
+            "-50,7",
+            "with the other sign of the latitude, 50,7 lies near them: the latitude",
+        ),
+        (
+            "50,-7",
+            "with the other sign of the longitude, 50,7 lies near them: the latitude",
+        ),
+        (
+            "-50,-7",
+            "with the other signs, 50,7 lies near them: the latitude",
+        ),
+        (
+            "50.5001,7.0001",
+            "the nearest stop lies 56 km from there; check both",
+        ),
+        (
+            "50.0631,7.0001",
+            "the nearest stop lies 7.0 km from there; check both",
+        ),
+        (
+            "50.0190,7.0001",
+            "the nearest stop lies 2.1 km from there; check both",
+        ),
+    ] {
+        let far = crate::common::error_of(&[&at[..], &[place]].concat());
+        assert!(far.contains(said), "{place}: {far}");
+    }
+    crate::common::stdout_of(&[&at[..], &["50.0170,7.0001"]].concat());
     let shown = crate::common::stdout_of(&["info", &path("bench.waypoints")]);
     let take_off =
         "take off: elevation (above the geoid EGM96, metres 160.0), latitude 50.0, longitude 7.0";

@@ -79,6 +79,24 @@ fn a_photo_is_accepted_with_a_note_saved_and_there_again() {
     assert_eq!(again.open().chosen_count(), before);
 }
 
+/// The note stands beside the box: whoever ticks that means it.
+#[test]
+fn a_typed_note_goes_with_the_box() {
+    let (mut desk, photo, name) = doubting();
+    desk.fill("Note on the photo", "measured with a tape");
+    desk.click(Role::Row, "Photo IMG_0001.jpg");
+    desk.click(Role::CheckBox, &format!("Export {name}"));
+    let decided = desk.open().settings().decisions;
+    let [decision] = &decided[..] else {
+        panic!("{decided:?}");
+    };
+    assert_eq!(
+        (&decision.photo, &*decision.note),
+        (&name, "measured with a tape")
+    );
+    assert_eq!(verdict(&desk, photo), Verdict::Accepted);
+}
+
 #[test]
 fn a_trusted_photo_is_left_out_by_its_box_and_by_its_button() {
     let mut desk = Desk::new(Some(&flight("assets/sample")));

@@ -142,9 +142,12 @@ impl Desk {
             .is_some()
     }
 
-    /// Whether a text with these words is on the screen.
+    /// Whether a text with these words is on the screen, with blanks that break or do not.
     pub fn says(&self, words: &str) -> bool {
-        self.texts().iter().any(|(text, _)| text.contains(words))
+        let words = words.replace('\u{a0}', " ");
+        let texts = self.texts().into_iter();
+        let mut texts = texts.map(|(text, _)| text.replace('\u{a0}', " "));
+        texts.any(|text| text.contains(&words))
     }
 
     /// Every text on the screen, with its place.

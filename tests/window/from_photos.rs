@@ -105,6 +105,24 @@ fn photos_without_overlap_are_a_line() {
     assert!(ended(&desk).is_none());
 }
 
+/// The photos are looked at anew for another coordinate system; the run begins behind that.
+#[test]
+fn start_is_one_click_behind_a_field() {
+    let (_folder, photos) = nine_photos();
+    for number in 4..=9 {
+        fs::remove_file(photos.join(format!("IMG_000{number}.jpg"))).expect("removed");
+    }
+    let mut desk = desk(&photos);
+    desk.node(Role::TextInput, "Coordinate system").click();
+    desk.harness.run();
+    let crs = "EPSG:32632".to_owned();
+    desk.harness.event(egui::Event::Text(crs.clone()));
+    desk.harness.run();
+    desk.click(Role::Button, "Start reconstruction");
+    assert_eq!(desk.harness.state().state().from_photos.form.crs, crs);
+    assert!(ended(&desk).is_some(), "it ran");
+}
+
 #[test]
 fn a_folder_that_is_none_is_said() {
     let (folder, photos) = nine_photos();

@@ -164,6 +164,43 @@ fn keys_go_on_beside_a_button() {
     );
 }
 
+/// Enter gives a field up, and Tab goes on from it, not from the window's first button.
+#[test]
+fn tab_goes_on_from_the_field_that_enter_left() {
+    let mut desk = Desk::new(Some(&flight("tests/windrow")));
+    desk.harness.state_mut().apply(Command::Tab(Tab::Flight));
+    desk.settle();
+    let field = "Standard deviation of camera positions";
+    let name = |desk: &Desk| focused(desk).map(|(name, _)| name);
+    desk.click(Role::TextInput, field);
+    desk.press(Modifiers::NONE, Key::Tab);
+    let next = name(&desk).expect("the next part");
+    desk.click(Role::TextInput, field);
+    desk.press(Modifiers::NONE, Key::Enter);
+    assert_eq!(name(&desk), None);
+    desk.press(Modifiers::NONE, Key::Tab);
+    assert_eq!(name(&desk), Some(next));
+}
+
+/// The pile and the photo are pictures: who does not see them is told what of.
+#[test]
+fn pictures_are_described() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.press(Modifiers::NONE, Key::B);
+    let described = |desk: &Desk, name: &str| {
+        let picture = desk.node(Role::Image, name);
+        picture.accesskit_node().description().expect("words")
+    };
+    let pile = described(&desk, "Viewport");
+    assert!(
+        pile.ends_with("the surface with its photos, 9 photos; IMG_0001.jpg is selected"),
+        "{pile}"
+    );
+    desk.press(Modifiers::NONE, Key::ArrowDown);
+    let photo = described(&desk, "Photo view IMG_0002.jpg");
+    assert!(photo.starts_with("photo 2 of 9, top "), "{photo}");
+}
+
 /// Tab goes over a photo in one step, its box: its cells are no stops.
 #[test]
 fn a_photo_is_one_stop() {

@@ -138,6 +138,36 @@ fn what_is_pointed_at_on_the_photo_is_known_in_the_pile() {
     assert_eq!(desk.selected(), other);
 }
 
+/// A key changes the photo or the view under a mouse that rests: what it points at is another place.
+#[test]
+fn the_point_is_that_under_a_resting_mouse() {
+    let mut desk = Desk::new(Some(&flight("tests/windrow")));
+    desk.press(Modifiers::NONE, Key::B);
+    let name = format!("Photo view {}", desk.selected());
+    let middle = desk.node(Role::Image, &name).rect().center();
+    hover(&mut desk, middle);
+    let before = linked(&desk).point;
+    desk.press(Modifiers::NONE, Key::ArrowDown);
+    let open = desk.open();
+    assert_eq!(open.selected, Some(1));
+    let posed = &open.flight().parts().photos[1];
+    let camera = open.flight().camera(posed);
+    let half = DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;
+    let ray = View::of_photo(camera, &posed.pose, 1.0).ray(half, half * 2.0);
+    let now = linked(&desk).point;
+    let off = (now - ray.origin).cross(ray.direction).length();
+    assert!(off < 0.01, "{off}");
+    assert!(now.distance(before) > 0.05, "{now}");
+
+    let at = desk.viewport().center();
+    hover(&mut desk, at);
+    let before = linked(&desk).point;
+    desk.press(Modifiers::NONE, Key::T);
+    let now = linked(&desk).point;
+    assert!(now != before);
+    assert!(in_viewport(&desk, now).distance(at) < 1.0, "{now}");
+}
+
 /// Beside the image there is no ray.
 #[test]
 fn beside_the_photo_nothing_is_pointed_at() {

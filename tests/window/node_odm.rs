@@ -204,6 +204,25 @@ fn addresses_are_looked_at_while_they_are_typed() {
     assert!(!desk.shows(Role::CheckBox, "Not encrypted: I trust the network"));
 }
 
+/// One click behind a field that is typed into: the button is there before the field is left.
+#[test]
+fn start_is_one_click_behind_the_address() {
+    let (_folder, mut desk) = desk("");
+    let is_grey = |desk: &Desk| {
+        let button = desk.node(Role::Button, "Start reconstruction");
+        button.accesskit_node().is_disabled()
+    };
+    assert!(is_grey(&desk));
+    desk.node(Role::TextInput, "Address").click();
+    desk.harness.run();
+    let address = "http://node.invalid:3000".to_owned();
+    desk.harness.event(egui::Event::Text(address));
+    desk.harness.run();
+    assert!(!is_grey(&desk));
+    desk.click(Role::Button, "Start reconstruction");
+    assert!(desk.says("would cross the network unencrypted"));
+}
+
 /// In words that do not depend on where the sources lie.
 fn looks(screen: &Screen, name: &str) {
     let mut desk = Desk::drawn(None, screen);

@@ -11,7 +11,7 @@ use fragscale::app::command::PictureRequest;
 use fragscale::app::command::{Asking, Choice};
 use fragscale::app::size_distributions::{DistributionCommand, Page};
 
-use crate::desk::{Desk, copy, flight};
+use crate::desk::{Desk, copy, copy_files, flight};
 use crate::own_frame::{model, positions};
 
 const NO: &str = "never written over";
@@ -191,6 +191,27 @@ fn the_bundled_flight_stays_as_it_came() {
     let photo = sample.join("photos/IMG_0004.jpg");
     refused(&mut desk, picture(&photo), &photo, NO);
     refused(&mut desk, Command::SaveAs(photo.clone().into()), &photo, NO);
+}
+
+/// As the command refuses it, and before anything is written.
+#[test]
+fn nothing_is_exported_among_the_flights_photos() {
+    let flight = copy("assets/sample");
+    let photos = flight.path().join("photos");
+    copy_files("assets/sample/photos", &photos);
+    let count = || fs::read_dir(&photos).expect("a folder").count();
+    let before = count();
+    let mut desk = Desk::new(Some(flight.path()));
+    apply(&mut desk, Command::ChooseAll(Choice::WithScale));
+    for to in [&photos, &flight.path().to_owned()] {
+        apply(&mut desk, Command::Export(to.clone().into()));
+    }
+    let log = &desk.harness.state().state().log;
+    let texts = log.iter().map(|line| line.text.as_str());
+    let refused = texts.filter(|text| text.contains("photos: the flight's photos lie in it"));
+    assert_eq!(refused.count(), 2, "{log:?}");
+    assert_eq!(count(), before);
+    assert!(!flight.path().join("scales.html").exists());
 }
 
 #[test]

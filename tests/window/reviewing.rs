@@ -107,6 +107,56 @@ fn doubtful_photos_are_reviewed_with_keys_alone() {
     assert_eq!(desk.open().settings(), before);
 }
 
+fn note(desk: &Desk, photo: usize) -> Option<String> {
+    let photo = desk.open().review.photo(photo).expect("a photo");
+    photo.decision.map(|decision| decision.note.clone())
+}
+
+/// Types a note in the stead of what is in the field, and stays in it.
+fn type_note(desk: &mut Desk, text: &str) {
+    desk.press(NONE, Key::W);
+    desk.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    desk.harness.event(Event::Text(text.to_owned()));
+    desk.settle();
+}
+
+/// What was typed of a photo waits for its decision while others are looked at; a decision that is there has it at once, as
+/// a step that can be undone.
+#[test]
+fn a_half_typed_note_is_not_lost() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.harness.state_mut().apply(Command::Limits(strict()));
+    desk.settle();
+    desk.press(NONE, Key::N);
+    let photos = doubtful(&desk);
+    let shown = |desk: &Desk| {
+        let field = desk.node(Role::TextInput, "Note of the review");
+        field.value().unwrap_or_default()
+    };
+    type_note(&mut desk, "level toe");
+    desk.click(Role::Button, "Next doubtful photo");
+    assert_eq!(desk.open().selected, Some(photos[1]));
+    assert_eq!(shown(&desk), "", "of the photo before");
+    desk.press(Modifiers::SHIFT, Key::N);
+    assert_eq!(desk.open().selected, Some(photos[0]));
+    assert_eq!(shown(&desk), "level toe");
+    assert!(!desk.open().is_changed(), "a note alone decides nothing");
+    desk.click(Role::Button, "Accept the reviewed photo");
+    assert_eq!(note(&desk, photos[0]).as_deref(), Some("level toe"));
+
+    desk.press(Modifiers::SHIFT, Key::N);
+    assert_eq!(desk.open().selected, Some(photos[0]));
+    type_note(&mut desk, "steep toe");
+    let other = format!("Photo {}", desk.open().name(photos[2]));
+    desk.click(Role::Row, &other);
+    assert_eq!(desk.open().selected, Some(photos[2]));
+    assert_eq!(note(&desk, photos[0]).as_deref(), Some("steep toe"));
+    assert_eq!(shown(&desk), "");
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(note(&desk, photos[0]).as_deref(), Some("level toe"));
+    assert_eq!(decision(&desk, photos[0]), Some(DecisionKind::Accepted));
+}
+
 /// A trusted photo that was left out counts in the review as in the tool bar.
 #[test]
 fn what_is_left_out_counts_alike_in_tool_bar_and_review() {

@@ -78,6 +78,34 @@ fn open_section(desk: &mut Desk) {
     desk.click(Role::DisclosureTriangle, "Scale object");
 }
 
+/// The button is there while the size is typed, and the click that leaves the field begins, with that size.
+#[test]
+fn tracing_begins_by_one_click_behind_the_size() {
+    let (_folder, mut desk) = sample();
+    open_section(&mut desk);
+    let type_size = |desk: &mut Desk, size: &str| {
+        let field = desk.node(Role::TextInput, "Diameter of the next sphere");
+        field.click();
+        desk.harness.run();
+        desk.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        desk.harness.event(egui::Event::Text(size.to_owned()));
+        desk.harness.run();
+    };
+    type_size(&mut desk, "none");
+    desk.click(Role::Button, "Trace sphere");
+    assert!(desk.open().objects.tracing.is_none());
+    type_size(&mut desk, "0.06");
+    desk.click(Role::Button, "Trace sphere");
+    assert!(desk.open().objects.tracing.is_some());
+    let size = desk.open().trace_size(ScaleObjectKind::Sphere);
+    assert_eq!(size, Some(DIAMETER));
+    // The size of before does not stand for one that is none.
+    desk.press(Modifiers::NONE, Key::Escape);
+    type_size(&mut desk, "none");
+    desk.click(Role::Button, "Trace sphere");
+    assert!(desk.open().objects.tracing.is_none());
+}
+
 fn objects(desk: &Desk) -> Vec<ScaleObject> {
     desk.open().settings().scale_objects
 }

@@ -8,6 +8,8 @@ use egui::{Event, Key, Modifiers};
 use fragscale::app::Command;
 use fragscale::app::control_points::ControlStep;
 use fragscale::app::fragments::{FragmentStep, PhotoOutlines};
+use fragscale::app::map::MapCommand;
+use fragscale::exports::PlanGround;
 use fragscale::scale::{Ground, ImageKind};
 use glam::{DVec2, DVec3};
 
@@ -278,6 +280,53 @@ fn read_again_with_what_was_added() {
     desk.press(Modifiers::NONE, Key::F5);
     assert!(desk.harness.state().state().held_back.is_none());
     assert_eq!(desk.open().files.origin.surface(), Some(added.as_path()));
+}
+
+/// Read again, a flight is looked at as before: the photo of that name is selected, wherever it stands by now; the layers,
+/// the filter and the map's ground stay, and what was picked is not asked for.
+#[test]
+fn read_again_it_is_looked_at_as_before() {
+    let folder = sample();
+    let layer = folder.path().join("before.ply");
+    fs::copy(folder.path().join("pile.ply"), &layer).expect("a copy");
+    let mut desk = Desk::new(Some(&folder.path().join("flight.toml")));
+    desk.click(Role::Row, "Photo IMG_0002.jpg");
+    apply(&mut desk, Command::AddLayer(layer.clone()));
+    apply(&mut desk, Command::Filter("IMG".to_owned()));
+    let ground = MapCommand::Ground(PlanGround::Photos);
+    apply(&mut desk, Command::Map(ground));
+    desk.press(Modifiers::NONE, Key::T);
+    let looking = desk.open().looking;
+    let poses = folder.path().join("poses.csv");
+    let text = fs::read_to_string(&poses).expect("poses");
+    let mut lines: Vec<&str> = text.lines().collect();
+    lines[1..].reverse();
+    fs::write(&poses, lines.join("\n") + "\n").expect("written");
+    let number = desk.open().number;
+    desk.press(Modifiers::NONE, Key::F5);
+    assert!(desk.harness.state().state().held_back.is_none());
+    assert_ne!(desk.open().number, number, "it was read");
+    assert_eq!(desk.open().name(7), "IMG_0002.jpg");
+    assert_eq!(desk.open().selected, Some(7));
+    let layers: Vec<_> = desk
+        .open()
+        .beside
+        .iter()
+        .map(|of| of.path.clone())
+        .collect();
+    assert_eq!(layers, [layer.clone()]);
+    // It is read: nothing is written over it.
+    assert!(desk.open().files.read.named(&layer).is_some());
+    assert_eq!(desk.open().table.order.text, "IMG");
+    assert_eq!(desk.open().map.ground, PlanGround::Photos);
+    assert_eq!(desk.open().looking, looking);
+    // That photo is gone.
+    let without = lines.iter().filter(|line| !line.starts_with("IMG_0002"));
+    let without: Vec<&str> = without.copied().collect();
+    fs::write(&poses, without.join("\n") + "\n").expect("written");
+    desk.press(Modifiers::NONE, Key::F5);
+    assert_eq!(desk.open().selected, Some(0));
+    assert_eq!(desk.open().beside.len(), 1);
 }
 
 /// While another flight is being read nothing of this one is changed: it would be gone with it, unasked.

@@ -9,8 +9,10 @@ pub enum ReviewStep {
     Back,
     /// Shows this one of the photo's reasons for doubt.
     Reason(usize),
-    /// What is typed as a note.
-    Note(String),
+    /// What is typed as the note of this photo.
+    Note(usize, String),
+    /// The field of this photo's note is left: a decision that holds has the note from now on.
+    TakeNote(usize),
     /// The keys go into the note.
     WriteNote,
     /// Takes the photo along, with the note, and goes on.

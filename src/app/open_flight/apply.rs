@@ -30,11 +30,11 @@ impl OpenFlight {
             }
             // What a photo shows is not clipped.
             Command::Hover(from, Some(ray)) if from != PointFrom::Pile => {
-                self.pointer.from = Some(from);
+                self.points_from(from, ray);
                 self.pick_in(Purpose::Hover, ray, None);
             }
             Command::Hover(from, Some(ray)) => {
-                self.pointer.from = Some(from);
+                self.points_from(from, ray);
                 self.pick(Purpose::Hover, ray);
             }
             Command::Hover(_, None) => {
@@ -115,7 +115,7 @@ impl OpenFlight {
         if self.selected != before {
             // The points were on the other photo.
             self.objects.tracing = None;
-            self.reviewing = Default::default();
+            self.reviewing.reason = 0;
             self.leave_fragments();
         }
         // Looking through a camera goes on through the next one, all of it.
@@ -214,10 +214,16 @@ impl OpenFlight {
         };
     }
 
+    fn points_from(&mut self, from: PointFrom, ray: Ray) {
+        self.pointer.from = Some(from);
+        self.pointer.asked = Some((from, ray));
+    }
+
     /// The mouse left, or the surface under it is another one.
     pub(crate) fn point_at_nothing(&mut self) {
         self.pointer.hover = None;
         self.pointer.from = None;
+        self.pointer.asked = None;
         self.pointer.linked = None;
     }
 

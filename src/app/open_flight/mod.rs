@@ -10,6 +10,7 @@ pub mod loading;
 mod measure;
 pub mod picker;
 mod picking;
+mod read_again;
 pub mod reviewing;
 pub mod survey;
 pub mod table;
@@ -24,11 +25,9 @@ use glam::DVec3;
 use crate::control_points::Control;
 use crate::corner_loupe::CornerFacts;
 use crate::exports::PhotoLine;
-use crate::flight::{
-    Along, ColoursFound, Flight, FlightSettings, Limits, LookedUp, Outcome, Review,
-};
+use crate::flight::{ColoursFound, Flight, FlightSettings, Limits, LookedUp, Outcome, Review};
 use crate::fragments::Fragments;
-use crate::geometry::{Bounds, LevelBox, LocalFrame};
+use crate::geometry::{Bounds, LevelBox, LocalFrame, Ray};
 use crate::linked::{LinkedPoint, PointFrom};
 use crate::map::FlightMap;
 use crate::opening::{Colours, HealthFinding, StatedOfFlight, Together, flight_health};
@@ -49,7 +48,7 @@ use survey::clip::Clip;
 use survey::picked::PickedPoints;
 use survey::surveyor::Surveyor;
 use survey::{Drawn, SecondBase};
-use table::{PhotosTable, Row};
+use table::{Counts, PhotosTable, Row};
 use tint::PhotoTint;
 use tracing::TracedObjects;
 
@@ -123,6 +122,8 @@ pub struct Pointer {
     pub hover: Option<DVec3>,
     /// What of the window it points from; `None` where it points at nothing.
     pub from: Option<PointFrom>,
+    /// From where, and the ray that was cast for it last.
+    pub asked: Option<(PointFrom, Ray)>,
     /// What is known of that place.
     pub linked: Option<Arc<LinkedPoint>>,
     /// The distance tool.
@@ -473,6 +474,7 @@ impl OpenFlight {
         let doubtful = rows.iter().enumerate().filter_map(doubtful).collect();
         self.table.shown = self.table.order.shown(&rows);
         self.table.doubtful = doubtful;
+        self.table.counts = Counts::new(&self.review);
         self.look_at_health();
     }
 
@@ -488,8 +490,7 @@ impl OpenFlight {
 
     /// How many photos go along into an export.
     pub fn chosen_count(&self) -> usize {
-        let photos = self.review.photos();
-        photos.filter(|p| p.goes_along(Along::Trusted)).count()
+        self.table.counts.chosen
     }
 
     /// The elevation of the ground: as set, or where a ray needed it, or the surface's middle.

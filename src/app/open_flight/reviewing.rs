@@ -1,8 +1,9 @@
 //! The review of the doubtful photos: which one is next, which reason is shown, and where to look.
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use crate::flight::{Doubt, InView, PhotoReview, Sight, Verdict};
+use crate::flight::{DecisionKind, Doubt, InView, PhotoReview, Sight, Verdict};
 use crate::open_flight::OpenFlight;
 use crate::render::PhotoZoom;
 
@@ -12,13 +13,14 @@ const STEEP: f64 = 0.9;
 /// The same on what is looked at from the side: the horizon is a line, the surface is not.
 const LEVEL: f64 = 0.08;
 
-/// The photo that is under review.
+/// What the review holds beside the decisions.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Reviewing {
-    /// Which of its reasons for doubt is shown.
+    /// Which of the selected photo's reasons for doubt is shown.
     pub reason: usize,
-    /// What was typed as a note; `None` where nothing was, and the saved one holds.
-    pub note: Option<String>,
+    /// What was typed as notes of photos, by their indices, and no decision has yet: they wait for one while other
+    /// photos are looked at.
+    pub notes: BTreeMap<usize, String>,
 }
 
 /// How far the review is.
@@ -61,19 +63,34 @@ impl OpenFlight {
         }
     }
 
+    /// What is in the field of a photo's note: what was typed, else what is saved.
+    pub fn note_of(&self, photo: usize) -> &str {
+        let typed = self.reviewing.notes.get(&photo).map(String::as_str);
+        let saved = || Some(self.review.photo(photo)?.decision?.note.as_str());
+        typed.or_else(saved).unwrap_or_default()
+    }
+
+    /// The photo's decision with the note that was typed since; `None` where nothing was, or no decision holds that
+    /// could have it.
+    pub(crate) fn noted_anew(&self, photo: usize) -> Option<(DecisionKind, String)> {
+        let note = self.reviewing.notes.get(&photo)?;
+        let reviewed = self.review.photo(photo)?;
+        let decision = reviewed.decision?;
+        let holds = reviewed.reasons_since_accepted().is_empty();
+        (holds && decision.note != *note).then(|| (decision.kind, note.clone()))
+    }
+
     /// How far the review is.
     pub fn review_progress(&self) -> ReviewProgress {
         let doubtful = &self.table.doubtful;
-        let photos = doubtful
-            .iter()
-            .filter_map(|&photo| self.review.photo(photo));
+        let counts = &self.table.counts;
         let place = |photo| doubtful.iter().position(|&at| at == photo);
         ReviewProgress {
             doubtful: doubtful.len(),
             at: self.selected.and_then(place).map(|place| place + 1),
-            waiting: photos.filter(PhotoReview::waits_for_decision).count(),
-            accepted: self.review.count_of(Verdict::Accepted),
-            left_out: self.review.count_of(Verdict::LeftOut),
+            waiting: counts.waiting,
+            accepted: counts.of(Verdict::Accepted),
+            left_out: counts.of(Verdict::LeftOut),
         }
     }
 

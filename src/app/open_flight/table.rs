@@ -1,7 +1,7 @@
 //! Which photos the table shows, and in which order.
 
 use crate::exports::{ColumnValue, PhotoColumn, PhotoLine};
-use crate::flight::{Along, Verdict};
+use crate::flight::{Along, PhotoReview, Review, Verdict};
 
 /// What the table can be sorted by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,8 +50,42 @@ pub struct PhotosTable {
     pub shown: Vec<usize>,
     /// The photos that something speaks against, in the flight's order.
     pub doubtful: Vec<usize>,
+    /// How many photos are what.
+    pub counts: Counts,
     /// The photo that the mouse is over.
     pub hovered: Option<usize>,
+}
+
+/// How many photos are what, of the review as it was when the table was arranged, which is whenever it changes: no frame counts
+/// the photos.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Counts {
+    verdicts: Vec<(Verdict, usize)>,
+    /// Those that go along into an export.
+    pub chosen: usize,
+    /// Those that wait for a decision.
+    pub waiting: usize,
+}
+
+impl Counts {
+    pub(crate) fn new(review: &Review) -> Self {
+        let of = |is: &dyn Fn(&PhotoReview<'_>) -> bool| review.photos().filter(|p| is(p)).count();
+        Self {
+            verdicts: Verdict::ALL
+                .into_iter()
+                .map(|verdict| (verdict, review.count_of(verdict)))
+                .collect(),
+            chosen: of(&|photo| photo.goes_along(Along::Trusted)),
+            waiting: of(&|photo| photo.waits_for_decision()),
+        }
+    }
+
+    /// Those with this verdict; see [`PhotoReview::settled`].
+    pub fn of(&self, verdict: Verdict) -> usize {
+        let mut verdicts = self.verdicts.iter();
+        let found = verdicts.find(|(other, _)| *other == verdict);
+        found.map_or(0, |(_, count)| *count)
+    }
 }
 
 /// What the table knows of one photo.
@@ -118,7 +152,7 @@ mod tests {
     use super::*;
     use crate::camera::{Camera, Distortion, Pose};
     use crate::exports::PHOTO_COLUMNS;
-    use crate::flight::{Flight, FlightParts, Limits, LookedUp, Outcome, Photo, Review};
+    use crate::flight::{Flight, FlightParts, Limits, LookedUp, Outcome, Photo};
     use crate::scale::{Ground, ImageKind};
     use crate::surface::{Cloud, Surface};
     use crate::units::LengthUnit;

@@ -5,6 +5,9 @@ use fragscale_formats::may_be_thousands;
 
 use super::accessible::described;
 
+/// How wide the field of a number is, points.
+const NUMBER: f32 = 90.0;
+
 /// Draws the field; returns the new number once it is settled. `label` names it for screen readers.
 pub(super) fn number_field(
     ui: &mut egui::Ui,
@@ -17,7 +20,14 @@ pub(super) fn number_field(
     if text.contains('.') {
         text = text.trim_end_matches('0').trim_end_matches('.').to_owned();
     }
-    let typed = text_field(ui, label, hover, &text, 90.0);
+    // In a row that is wrapped the unit stands beside its number, not at the begin of the next row.
+    let unit = super::rows::text_width(ui, suffix) + ui.spacing().item_spacing.x;
+    let wide = NUMBER + 2.0 * ui.spacing().button_padding.x + unit;
+    let has_room = ui.available_size_before_wrap().x >= wide;
+    if ui.layout().main_wrap && !has_room && ui.max_rect().width() >= wide {
+        ui.end_row();
+    }
+    let typed = text_field(ui, label, hover, &text, NUMBER);
     if !suffix.is_empty() {
         ui.label(suffix);
     }
@@ -46,7 +56,7 @@ pub(super) fn settled(ui: &mut egui::Ui, label: &str, typed: Option<String>) -> 
 }
 
 /// What was typed as a number: a decimal comma is what half of the world types. Or why it is none.
-fn number_of(typed: &str) -> Result<f64, String> {
+pub(super) fn number_of(typed: &str) -> Result<f64, String> {
     let text = typed.trim();
     if text.contains(',') && may_be_thousands(text) {
         let [whole, point] = ["", "."].map(|sign| text.replace(',', sign));
@@ -81,6 +91,12 @@ pub(super) fn hinted_field(
     width: f32,
 ) -> Option<String> {
     field_of(ui, label, label, hover, text, hint, width)
+}
+
+/// What stands in the field of that label, while it is typed and does not count yet.
+pub(super) fn being_typed(ui: &egui::Ui, label: &str) -> Option<String> {
+    let field = ui.scope_id().with(label);
+    ui.data(|data| data.get_temp(field))
 }
 
 /// The same that is told by `key` where its label changes with what is typed elsewhere: else a field that is entered would be another

@@ -5,6 +5,10 @@ use crate::from_photos::FromPhotosStep;
 use crate::names;
 use crate::state::{LogLine, Severity, State};
 
+/// So many lines of the log are laid out in a frame: what they are high is only known by breaking them. A thousand more
+/// would be read by nobody in this panel.
+const SHOWN: usize = 300;
+
 /// Draws the log.
 pub fn log_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
@@ -28,10 +32,16 @@ pub fn log_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) 
         .show_viewport(ui, |ui, sight| lines(state, sight, ui));
 }
 
-/// Every line in as many rows as it needs; only those in sight are drawn. `sight` counts from the top of the first line.
+/// The last lines, each in as many rows as it needs; only those in sight are drawn. `sight` counts from the top of the
+/// first line.
 fn lines(state: &State, sight: egui::Rect, ui: &mut egui::Ui) {
     let first = ui.max_rect().top();
-    for line in &state.log {
+    let (earlier, shown) = state.log.split_at(state.log.len().saturating_sub(SHOWN));
+    if !earlier.is_empty() {
+        let count = earlier.len();
+        ui.weak(format!("{count} earlier lines: Copy log has them all"));
+    }
+    for line in shown {
         let text = format!("{} {}", sign(line), line.text);
         let shown = egui::RichText::new(names::unbroken(&text)).color(color(line, ui.visuals()));
         // egui remembers how it broke it.

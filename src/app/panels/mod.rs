@@ -16,6 +16,7 @@ pub(crate) mod linked;
 mod log_panel;
 mod map;
 mod menu_bar;
+mod note;
 mod path_field;
 mod photo_view;
 mod photos_table;
@@ -32,8 +33,8 @@ mod verdict;
 mod view_buttons;
 mod working;
 
-pub(crate) use accessible::Scrolled;
-pub use accessible::{focus_ring, spoken};
+pub use accessible::{LastFocus, focus_ring, spoken};
+pub(crate) use accessible::{Scrolled, described};
 pub use control_points::control as control_points;
 pub use corner_loupe::Crops;
 pub use dialogs::ask;

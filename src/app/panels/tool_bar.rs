@@ -121,7 +121,7 @@ fn verdicts(state: &State) -> Vec<(Verdict, usize, bool)> {
     let of = |open: &OpenFlight| {
         let counted = Verdict::ALL.into_iter().map(|verdict| {
             let shown = open.table.order.verdict == Some(verdict);
-            (verdict, open.review.count_of(verdict), shown)
+            (verdict, open.table.counts.of(verdict), shown)
         });
         let is_there = |(verdict, count, shown): &(Verdict, usize, bool)| {
             *count > 0 || *shown || USUAL.contains(verdict)

@@ -97,6 +97,19 @@ pub enum Leaving {
     Quit,
 }
 
+impl Leaving {
+    /// Whether the same flight comes back, with what is shown and measured of it.
+    pub(crate) fn comes_back(&self) -> bool {
+        matches!(
+            self,
+            Self::Read {
+                named: Named::Again,
+                ..
+            }
+        )
+    }
+}
+
 /// The whole state of the window.
 pub struct State {
     /// For clipboard, theme and window; also what wakes the window up.

@@ -64,6 +64,10 @@ impl State {
         }));
         let work = move |progress: &Progress| {
             let begun = Instant::now();
+            for folder in exports::export_folders(&folder) {
+                let apart = opening::apart_from_photos(&folder, &photo_files);
+                apart.map_err(|error| error.to_string())?;
+            }
             let changed = read_as.all_changed();
             let changed: Vec<String> = changed.iter().map(|path| changed_in_words(path)).collect();
             warnings.extend(changed.iter().cloned());

@@ -1,6 +1,5 @@
 //! Opening a flight.
 
-use std::collections::HashMap;
 use std::path::PathBuf;
 
 use super::stood::changed_in_words;
@@ -32,6 +31,8 @@ impl State {
         let on_screen = self.open.as_ref();
         let on_screen = on_screen.map(|open| (open.files.path.clone(), open.files.options.clone()));
         let again = on_screen.clone().filter(|_| how == Named::Again);
+        let seen = self.open.as_ref().filter(|_| how == Named::Again);
+        let seen = seen.map(|open| open.first_number);
         let base = self.tried.clone().or(on_screen);
         let base = base.filter(|_| how != Named::Alone);
         let added = how == Named::Added;
@@ -55,7 +56,9 @@ impl State {
                 .map_or_else(|| named(&paths, base, added), Ok)
                 .and_then(|(path, options)| load(path, options, None, Some(&on_sample), progress))
         };
-        self.start(Task::OPEN, work, Self::take_opened);
+        self.start(Task::OPEN, work, move |state, opened| {
+            state.take_opened(opened, seen);
+        });
     }
 
     /// Opens what was named; a cloud alone can be several things to the flight on the screen, so it is asked
@@ -97,12 +100,15 @@ impl State {
         self.notice = None;
         self.reads_other = false;
         let work = move |progress: &Progress| load(path, options, Some(again), None, progress);
-        self.start(Task::OPEN, work, Self::take_opened);
+        self.start(Task::OPEN, work, |state, opened| {
+            state.take_opened(opened, None);
+        });
     }
 
-    fn take_opened(&mut self, opened: Result<Loaded, Box<NotOpened>>) {
+    /// `seen` is the first number of the flight on the screen, where it is this one as its files were before.
+    fn take_opened(&mut self, opened: Result<Loaded, Box<NotOpened>>, seen: Option<u64>) {
         match opened {
-            Ok(loaded) => self.take_flight(loaded),
+            Ok(loaded) => self.take_flight(loaded, seen),
             Err(not_opened) => {
                 let NotOpened {
                     why,
@@ -129,11 +135,12 @@ impl State {
         }
     }
 
-    fn take_flight(&mut self, loaded: Loaded) {
+    fn take_flight(&mut self, loaded: Loaded, seen: Option<u64>) {
         let name = loaded.opened.flight.parts().name.clone();
         let [read, computed] = loaded.took;
         self.note_step("Opening the flight", &name, read);
         self.note_step("Computing scales", &name, computed);
+        let mut as_seen = None;
         let again = match (loaded.again_for, self.open.take()) {
             // The same flight with other surface options: what the engineer did stays.
             (Some(number), Some(before)) if number == before.number => {
@@ -147,6 +154,10 @@ impl State {
             (Some(_), other) => {
                 self.open = other;
                 return;
+            }
+            (None, Some(before)) if seen == Some(before.first_number) => {
+                as_seen = Some(before);
+                None
             }
             (None, before) => {
                 if let Some(before) = before {
@@ -183,6 +194,11 @@ impl State {
             }
             open.take_stated();
             open.take_decisions();
+        }
+        if let Some(before) = as_seen {
+            for gone in open.look_as(before) {
+                self.say(Severity::Warning, &gone);
+            }
         }
         self.open = Some(open);
         self.start_picker();
@@ -265,89 +281,5 @@ impl State {
                 }
             }
         });
-    }
-}
-
-impl OpenFlight {
-    /// Takes over what the engineer did from the flight before it was read again, photo by photo by their names: its files may
-    /// have others by now, or in another order. Returns what is gone, a sentence each.
-    fn keep_from(&mut self, mut before: Box<Self>) -> Vec<String> {
-        let names = |open: &Self| -> Vec<String> {
-            let photos = open.flight().parts().photos.iter();
-            photos.map(|photo| photo.name.clone()).collect()
-        };
-        let (names_before, names_now) = (names(&before), names(self));
-        let now_at: HashMap<&str, usize> = names_now.iter().map(String::as_str).zip(0..).collect();
-        let now_at = |photo: usize| {
-            let name = names_before.get(photo)?;
-            now_at.get(name.as_str()).copied()
-        };
-        let is_same_order = names_before == names_now;
-        let mut gone_with_place = Vec::new();
-        self.first_number = before.first_number;
-        self.files.saved = before.files.saved.clone();
-        // Saved elsewhere while the file was read.
-        self.files.path.clone_from(&before.files.path);
-        self.files.options.clone_from(&before.files.options);
-        self.files.origin = before.files.origin.clone();
-        self.files.opened_file.clone_from(&before.files.opened_file);
-        self.files.read.extend(&before.files.read);
-        self.files.bundled = before.files.bundled;
-        self.files.kept.clone_from(&before.files.kept);
-        // The settings are those of before, whoever changed the file meanwhile.
-        self.files.stood = before.files.stood.clone();
-        self.colors.keep_limits(&before.colors);
-        // Brought to another place by control points, what was clicked and looked at is elsewhere.
-        if self.computed.placed == before.computed.placed {
-            self.pointer.measure = before.pointer.measure;
-            self.pointer.drawn = before.pointer.drawn.take();
-            self.pointer.put_away = std::mem::take(&mut before.pointer.put_away);
-            self.pointer.second = before.pointer.second.take();
-            std::mem::swap(&mut self.beside, &mut before.beside);
-            std::mem::swap(&mut self.pointer.picked, &mut before.pointer.picked);
-            self.clip = before.clip;
-            std::mem::swap(&mut self.clip_history, &mut before.clip_history);
-            self.looking = before.looking;
-            self.planning.keep_from(&mut before.planning);
-        } else {
-            self.looking.size = before.looking.size;
-            let picked = !before.pointer.picked.history.now().is_empty();
-            let all = [
-                (!before.beside.is_empty(), "clouds beside the surface"),
-                (
-                    before.pointer.second.is_some(),
-                    "the second surface of volumes",
-                ),
-                (picked, "picked points"),
-            ];
-            let were_there = all.into_iter().filter(|(is_there, _)| *is_there);
-            gone_with_place.extend(were_there.map(|(_, what)| {
-                format!("{what} were of where the flight was before, and are gone: add them anew")
-            }));
-        }
-        std::mem::swap(&mut self.control, &mut before.control);
-        let fragments = std::mem::take(&mut before.fragments).of_another_surface();
-        let (fragments, gone) = fragments.moved(now_at);
-        self.fragments = fragments;
-        self.photo_view.placing = before.photo_view.placing;
-        self.photo_view.image = before.photo_view.image;
-        for beside in &mut self.beside {
-            // The local frame may be another one.
-            beside.uploaded = None;
-        }
-        self.objects.tracing = before.objects.tracing.take().filter(|_| is_same_order);
-        self.objects.sizes = before.objects.sizes;
-        std::mem::swap(&mut self.georeferencing, &mut before.georeferencing);
-        std::mem::swap(&mut self.history, &mut before.history);
-        self.looking.through = self.looking.through.and_then(now_at);
-        self.selected = (before.selected).and_then(|photo| now_at(photo).or(self.selected));
-        let gone = gone.into_iter().filter_map(|photo| names_before.get(photo));
-        let gone = gone.map(|photo| {
-            format!("photo '{photo}' is not in the flight any more: its outlines, which no file has, are gone")
-        });
-        let gone = gone.chain(gone_with_place).collect();
-        std::mem::swap(&mut self.table.order, &mut before.table.order);
-        before.let_go();
-        gone
     }
 }

@@ -20,7 +20,7 @@ use crate::command::{Command, PictureRequest, ViewChange};
 use crate::frame_times::{FrameTimes, Phase};
 use crate::linked::PointFrom;
 use crate::open_flight::OpenFlight;
-use crate::panels::linked;
+use crate::panels::{described, linked};
 use crate::render::{Background, Gpu, Renderer, Show, View};
 use crate::size_distributions::Page;
 use crate::state::State;
@@ -88,6 +88,7 @@ impl Viewport {
         let place = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(place, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
+        described(&response, || in_words(state, open));
         let pixels_per_point = f64::from(ui.ctx().pixels_per_point());
         let size = [place.width(), place.height()]
             .map(|side| ((f64::from(side) * pixels_per_point).round() as u32).max(1));
@@ -201,6 +202,26 @@ impl Viewport {
         graphics.drawn = None;
         state.start_writing_picture(to, drawn);
     }
+}
+
+/// What the picture is of, for who does not see it.
+fn in_words(state: &State, open: &OpenFlight) -> String {
+    let parts = open.flight().parts();
+    let photos = match parts.photos.len() {
+        0 => "no photos".to_owned(),
+        1 => "1 photo".to_owned(),
+        many => format!("{many} photos"),
+    };
+    let shown = match state.page {
+        Page::Plan => "the planned flight over the surface",
+        _ if open.looking.through.is_some() => "the surface through a photo's camera",
+        _ => "the surface with its photos",
+    };
+    let selected = open.selected.map_or_else(
+        || "no photo is selected".to_owned(),
+        |photo| format!("{} is selected", open.name(photo)),
+    );
+    format!("{}: {shown}, {photos}; {selected}", parts.name)
 }
 
 /// What a frame looks at.

@@ -6,6 +6,7 @@ use super::Scene;
 use crate::command::{Command, ViewChange};
 use crate::linked::PointFrom;
 use crate::open_flight::OpenFlight;
+use crate::panels::linked;
 
 pub(super) fn mouse(
     scene: &Scene,
@@ -39,13 +40,7 @@ pub(super) fn mouse(
     };
     let cursor = scene.pixel(at);
     let ray = scene.view.ray(cursor, size);
-    let (scroll, pinch, still) = ui.input(|input| {
-        (
-            input.smooth_scroll_delta().y,
-            input.zoom_delta(),
-            input.pointer.delta() == egui::Vec2::ZERO,
-        )
-    });
+    let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
     let factor = (-f64::from(scroll) * 0.004).exp() / f64::from(pinch);
     if factor != 1.0 {
         commands.push(Command::View(ViewChange::Zoom {
@@ -58,7 +53,7 @@ pub(super) fn mouse(
         commands.push(Command::DoubleClick(ray));
     } else if response.clicked() {
         commands.push(Command::Click(ray));
-    } else if !still && !response.dragged() && !response.context_menu_opened() {
-        commands.push(Command::Hover(PointFrom::Pile, Some(ray)));
+    } else if !response.dragged() && !response.context_menu_opened() {
+        linked::hover(open, PointFrom::Pile, Some(ray), commands);
     }
 }

@@ -1,13 +1,16 @@
 //! What a mission's file does not say and another ground station asks for, as it is typed.
 
 use clap::{Args, ValueEnum};
+use glam::DVec2;
 
 use crate::cli::on_surface::places::place;
 use crate::cli::planning::flying::speed;
-use crate::plan::{Above, Height, Mission, TakeOff};
+use crate::fault::Fault;
+use crate::plan::{Above, Height, Mission, Stop, TakeOff};
 
-/// No drone for photos comes back from farther, kilometres: who typed it took one number for another.
-const FARTHEST: f64 = 50.0;
+/// The farthest that the nearest stop may lie from a take-off that is typed, kilometres: nobody sees a drone there, which its pilot
+/// has to in most countries, and photos of one pile are taken within some hundred metres. Who typed it took one number for another.
+const FARTHEST: f64 = 2.0;
 
 #[derive(Debug, Args)]
 pub(super) struct StatedArguments {
@@ -20,7 +23,7 @@ pub(super) struct StatedArguments {
     safe_height: Option<f64>,
     /// Where the drone takes off, in degrees of WGS 84, likewise.
     #[arg(long, value_name = "LATITUDE,LONGITUDE", value_parser = place, allow_hyphen_values = true)]
-    take_off: Option<glam::DVec2>,
+    take_off: Option<DVec2>,
     /// The elevation of the take-off in metres, likewise: of files whose heights are absolute, for drones that count
     /// from there.
     #[arg(long, value_name = "METRES", value_parser = number, allow_hyphen_values = true, requires = "datum")]
@@ -83,19 +86,10 @@ impl StatedArguments {
                     before.latitude, before.longitude
                 ));
             }
-            mission.take_off = Some(TakeOff {
-                latitude: place.x,
-                longitude: place.y,
-                elevation: None,
-            });
-        }
-        if let (Some(_), Some(kilometres)) = (self.take_off, mission.farthest_from_take_off())
-            && kilometres > FARTHEST
-        {
-            let what = format!("take-off: a stop lies {kilometres:.0} km from there");
-            return Err(format!(
-                "{what}; the latitude comes first, then the longitude"
-            ));
+            if let Some(fault) = too_far(mission, place) {
+                return Err(fault.to_string());
+            }
+            mission.take_off = Some(take_off_at(place));
         }
         if let Some(above) = self.datum.map(Datum::above) {
             let state = |height: &mut Height| {
@@ -137,4 +131,58 @@ impl StatedArguments {
         mission.check().map_err(|fault| fault.to_string())?;
         Ok(told)
     }
+}
+
+fn take_off_at(place: DVec2) -> TakeOff {
+    TakeOff {
+        latitude: place.x,
+        longitude: place.y,
+        elevation: None,
+    }
+}
+
+/// From a place, latitude and longitude, to the nearest stop, kilometres.
+fn to_nearest_stop(mission: &Mission, place: DVec2) -> Option<f64> {
+    let to_stop = |stop: &Stop| {
+        let of_one = Mission {
+            take_off: Some(take_off_at(place)),
+            stops: vec![stop.clone()],
+            ..Mission::default()
+        };
+        of_one.farthest_from_take_off()
+    };
+    let stops = mission.stops.iter().filter_map(to_stop);
+    stops.reduce(f64::min)
+}
+
+/// Why nobody takes off there, and what was meant, if that can be told.
+fn too_far(mission: &Mission, place: DVec2) -> Option<Fault> {
+    let kilometres = to_nearest_stop(mission, place)?;
+    if kilometres <= FARTHEST {
+        return None;
+    }
+    let is_near = |place: DVec2| {
+        let is_latitude = place.x.abs() <= 90.0;
+        is_latitude && to_nearest_stop(mission, place).is_some_and(|to| to <= FARTHEST)
+    };
+    let ways = [
+        ("swapped", DVec2::new(place.y, place.x)),
+        (
+            "with the other sign of the latitude",
+            DVec2::new(-place.x, place.y),
+        ),
+        (
+            "with the other sign of the longitude",
+            DVec2::new(place.x, -place.y),
+        ),
+        ("with the other signs", -place),
+    ];
+    let rule = "the latitude comes first, then the longitude; south and west are negative";
+    let remedy = match ways.iter().find(|(_, place)| is_near(*place)) {
+        Some((way, near)) => format!("{way}, {},{} lies near them: {rule}", near.x, near.y),
+        None => format!("check both numbers: {rule}"),
+    };
+    let decimals = usize::from(kilometres < 10.0);
+    let what = format!("take-off: the nearest stop lies {kilometres:.decimals$} km from there");
+    Some(Fault::new(what, remedy))
 }

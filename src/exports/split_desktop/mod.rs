@@ -42,6 +42,7 @@ use std::sync::{Mutex, PoisonError};
 
 pub use folder::Replace;
 pub use folder::other_flight_in;
+pub use plan::export_folders;
 
 use self::folder::ExportFolder;
 use self::footprints::Footprints;

@@ -1,5 +1,7 @@
 //! What an export consists of: its files, before any of them is made.
 
+use std::path::{Path, PathBuf};
+
 use super::ExportRequest;
 use super::objects::PhotoObject;
 use super::photo_names::PhotoNames;
@@ -12,6 +14,20 @@ pub(super) const CSV: &str = "scales.csv";
 pub(super) const SHEET: &str = "scales.html";
 pub(super) const GEOJSON: &str = "footprints.geojson";
 pub(super) const KML: &str = "footprints.kml";
+
+/// The folders of pictures.
+const PHOTOS: &str = "photos";
+const OVERLAYS: &str = "overlays";
+const THUMBNAILS: &str = "thumbnails";
+const MASKS: &str = "masks";
+const RECTIFIED: &str = "rectified";
+
+/// The folders that an export into `dir` may write into.
+pub fn export_folders(dir: &Path) -> Vec<PathBuf> {
+    let below = [PHOTOS, OVERLAYS, THUMBNAILS, MASKS, RECTIFIED];
+    let below = below.map(|name| dir.join(name));
+    std::iter::once(dir.to_owned()).chain(below).collect()
+}
 
 /// For each photo of the flight the names of its pictures, or why it has none. `objects` are those of
 /// each photo.
@@ -39,17 +55,17 @@ pub(super) fn pictures(
                 Err("no pictures: the photo file is missing".to_owned())
             }
             _ => Ok(PhotoNames {
-                photo: format!("photos/{stem}{extension}"),
-                overlay: format!("overlays/{stem}.jpg"),
-                thumbnail: format!("thumbnails/{stem}.jpg"),
+                photo: format!("{PHOTOS}/{stem}{extension}"),
+                overlay: format!("{OVERLAYS}/{stem}.jpg"),
+                thumbnail: format!("{THUMBNAILS}/{stem}.jpg"),
                 mask: objects
                     .get(index)
                     .is_some_and(|objects| objects.iter().any(PhotoObject::is_masked))
-                    .then(|| format!("masks/{stem}.png")),
+                    .then(|| format!("{MASKS}/{stem}.png")),
                 rectified: (request.rectified.is_some()).then(|| {
                     rectified::FORMAT
                         .endings()
-                        .map(|end| format!("rectified/{stem}.{end}"))
+                        .map(|end| format!("{RECTIFIED}/{stem}.{end}"))
                 }),
             }),
         })

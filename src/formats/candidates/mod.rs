@@ -3,7 +3,8 @@
 //! engineer's.
 //!
 //! A folder is looked into as its packages lay it out (packages/mod.rs); only where nothing lies in it
-//! itself, its folders are looked into, two levels down.
+//! itself, its folders are looked into, two levels down. Pictures above a flight that do not say where they were taken
+//! (screenshots, sketches) are nothing.
 
 use std::fs;
 use std::io::Read;
@@ -12,7 +13,9 @@ use std::path::{Path, PathBuf};
 use crate::FileError;
 use crate::fault::Fault;
 use crate::jobs::Progress;
-use crate::packages::{self, DETECTED_BY, LOOKED_AT, Package, colmap, odm, opensfm, pix4d};
+use crate::packages::{
+    self, DETECTED_BY, LOOKED_AT, Package, colmap, drone_photos, odm, opensfm, pix4d,
+};
 use crate::photos::photos_below;
 
 /// How many folders below one are looked into, over both levels.
@@ -114,6 +117,23 @@ impl Contents {
             names.join(", ")
         ))
     }
+}
+
+/// The reconstructions of which one is meant by a folder itself.
+pub(crate) fn meant_in(folder: &Path) -> Vec<(Package, PathBuf)> {
+    let meant = Contents::of(folder).meant;
+    let are_loose = !meant.is_empty()
+        && are_photos(&meant)
+        && !drone_photos::has_placed(folder)
+        && below(folder)
+            .iter()
+            .any(|(package, _)| *package != Some(Package::Photos));
+    if are_loose { Vec::new() } else { meant }
+}
+
+/// Whether these are mere photos.
+fn are_photos(meant: &[(Package, PathBuf)]) -> bool {
+    meant.iter().all(|(package, _)| *package == Package::Photos)
 }
 
 /// The reconstructions that lie as files in a folder, besides those that are `known`.
@@ -222,7 +242,7 @@ pub(crate) fn below(folder: &Path) -> Vec<Found> {
                     continue;
                 }
                 let contents = Contents::of(&folder).meant;
-                if contents.is_empty() {
+                if are_photos(&contents) {
                     next.push(folder);
                 }
                 for (package, path) in contents {

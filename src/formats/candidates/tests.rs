@@ -1,5 +1,7 @@
 use std::fs;
 
+use fragscale_test_data::jpeg;
+
 use super::*;
 use crate::Kind;
 use crate::read_project;
@@ -281,6 +283,38 @@ fn a_folder_above_names_the_projects_inside() {
             .starts_with("a folder with no flight.toml and no reconstruction in it; ")
     );
     assert_eq!(candidates(dir.path()), []);
+}
+
+/// Screenshots and sketches above a flight are no flight themselves; photos that say where they were taken are.
+#[test]
+fn loose_pictures_above_a_flight_are_not_meant() {
+    let dir = folder(&[
+        ("Screenshot 1.png", "x"),
+        ("sketch.jpg", "x"),
+        ("may/flight.toml", "format = 1\n"),
+        // A level deeper, likewise.
+        ("june/plan.png", "x"),
+        ("june/pit/model.nvm", &nvm(3)),
+    ]);
+    let flights = [
+        "may/flight.toml: fragscale",
+        "june/pit/model.nvm: VisualSFM, 3 photos",
+    ];
+    assert_eq!(listed(dir.path()), flights);
+    let said = refused(dir.path());
+    assert!(said.contains("no reconstruction in it"), "{said}");
+    assert!(said.contains(&flights.join("; ")), "{said}");
+    let down = r#"<rdf:Description drone-dji:GimbalYawDegree="+0.00" drone-dji:GimbalPitchDegree="-90.00" drone-dji:GimbalRollDegree="+0.00"/>"#;
+    let exif = [jpeg::gps(), vec![jpeg::text(exif::Tag::Make, "DJI")]].concat();
+    let photo = jpeg::jpeg((40, 30), &exif, &[&jpeg::packet(down)]);
+    fs::write(dir.path().join("sketch.jpg"), photo).unwrap();
+    assert_eq!(
+        detect(dir.path()),
+        Ok(Kind::Reconstruction(Package::Photos, dir.path().to_owned()))
+    );
+    // Alone they are photos that say too little.
+    let dir = folder(&[("Screenshot 1.png", "x"), ("photos/a.jpg", "x")]);
+    assert_eq!(listed(dir.path()), [".: photos alone, 1 photo"]);
 }
 
 #[test]

@@ -40,6 +40,7 @@ use std::path::Path;
 use crate::fault::Fault;
 use crate::files::{FileError, is_own_result, last_segment, read_small, text_from_bytes};
 use crate::labels::{FINES, LabelImage, NOT_ROCK};
+use crate::photos::same_name::is_same;
 use crate::text::notes::Notes;
 use outline::OutlinedImage;
 
@@ -178,7 +179,7 @@ impl MaskFile {
         let other = image
             .name
             .as_deref()
-            .filter(|name| stem(name) != stem(photo.name));
+            .filter(|name| !is_same(stem(name), stem(photo.name)));
         if let (Contents::One(_), Some(other)) = (&self.contents, other) {
             let what = format!(
                 "it says that its outlines are of {other}, not of {}",
@@ -200,8 +201,8 @@ fn named<'a>(images: &'a [OutlinedImage], photo: &str) -> Result<&'a OutlinedIma
     };
     let ways: [&dyn Fn(&str) -> bool; 3] = [
         &|name| name == photo,
-        &|name| last_segment(name) == last_segment(photo),
-        &|name| stem(name) == stem(photo),
+        &|name| is_same(last_segment(name), last_segment(photo)),
+        &|name| is_same(stem(name), stem(photo)),
     ];
     for way in ways {
         match all(way)[..] {

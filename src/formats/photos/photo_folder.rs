@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use super::image_names::{is_image, readable};
 use super::photo_size;
 use super::photos_below::{PhotosBelow, folders_of_photos};
+use super::same_name;
 use crate::fault::{Fault, first_names};
 use crate::files::{last_segment, open_file, unreadable_folder};
 use crate::packages::reconstruction::Reconstruction;
@@ -18,7 +19,7 @@ const SHOWN: usize = 2;
 pub struct PhotoFolder<'a> {
     /// Where they are, if a folder is known.
     pub folder: Option<&'a Path>,
-    /// Its files by their names in lower case: those directly in it, or, where no image is among them, those in the folders
+    /// Its files by the keys of their names (`same_name`): those directly in it, or, where no image is among them, those in the folders
     /// that a camera made in it. Of two that differ in nothing else `None`: which is meant is not for us to say.
     in_any_case: HashMap<String, Option<PathBuf>>,
 }
@@ -28,11 +29,7 @@ impl<'a> PhotoFolder<'a> {
     pub fn new(folder: Option<&'a Path>) -> Self {
         let mut in_any_case = HashMap::new();
         let mut add = |path: PathBuf| {
-            let key = path
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .to_lowercase();
+            let key = same_name::key(&path.file_name().unwrap_or_default().to_string_lossy());
             let is_photo = is_image(&key);
             let known = in_any_case.entry(key);
             known
@@ -59,7 +56,7 @@ impl<'a> PhotoFolder<'a> {
     }
 
     /// The file of a photo: its name below the folder, or the last part of its name in the folder,
-    /// whatever its case, perhaps with an ending more, or with its ending spelt otherwise (jpeg for jpg). Where the photo's own name has
+    /// whatever its case and whether its accents stand apart, perhaps with an ending more, or with its ending spelt otherwise (jpeg for jpg). Where the photo's own name has
     /// two endings ("DJI_0025.JPG.tif"), the file may have the first alone.
     pub fn find(&self, photo: &str) -> Option<PathBuf> {
         let folder = self.folder?;
@@ -67,14 +64,16 @@ impl<'a> PhotoFolder<'a> {
         if last.is_empty() {
             return None;
         }
-        let as_named = [photo, last].map(|name| folder.join(name));
+        let mut as_named = std::iter::once(photo.to_owned())
+            .chain(same_name::other_spellings(photo))
+            .chain(std::iter::once(last.to_owned()))
+            .map(|name| folder.join(name));
         let first_ending = last.rsplit_once('.').map(|(stem, _)| stem);
         let bare = first_ending.filter(|stem| is_image(stem));
         // Lists of poses and labels leave endings out, and programs put theirs behind the photo's own.
         let longer = readable().map(|ending| format!("{last}.{ending}"));
-        let in_any_case = |name: String| self.in_any_case.get(&name.to_lowercase())?.clone();
+        let in_any_case = |name: String| self.in_any_case.get(&same_name::key(&name))?.clone();
         as_named
-            .into_iter()
             .find(|path| path.is_file())
             .or_else(|| {
                 let mut found = std::iter::once(last.to_owned())
@@ -191,6 +190,35 @@ mod tests {
         let files = PhotoFolder::new(Some(folder.path()));
         let found = ["a.jpg", "b.jpeg", "c.TIFF", "d.jpg"].map(|name| files.find(name).is_some());
         assert_eq!(found, [true, true, true, false]);
+    }
+
+    /// A folder as macOS wrote it beside a list of poses from elsewhere, and the other way round; also where a folder's name has
+    /// accents.
+    #[test]
+    fn accents_apart_are_the_same_letters() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in [
+            "Bo\u{308}schung 1.JPG",
+            "B\u{f6}schung 2.JPG",
+            "Su\u{308}d/3.jpg",
+            "N\u{f6}rd/4.jpg",
+        ] {
+            let path = folder.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, &name[name.len() - 5..]).unwrap();
+        }
+        let files = PhotoFolder::new(Some(folder.path()));
+        for (asked, found) in [
+            ("B\u{f6}schung 1.JPG", "1.JPG"),
+            ("b\u{f6}schung 1", "1.JPG"),
+            ("D:\\flug\\Bo\u{308}schung 2.JPG", "2.JPG"),
+            ("S\u{fc}d/3.jpg", "3.jpg"),
+            ("No\u{308}rd/4.jpg", "4.jpg"),
+        ] {
+            let path = files.find(asked).expect(asked);
+            assert_eq!(fs::read_to_string(path).unwrap(), found, "{asked}");
+        }
+        assert_eq!(files.find("Boschung 1.JPG"), None);
     }
 
     /// A memory card's DCIM, of which a package kept the names of files alone: what two of its folders have is nobody's.

@@ -3,12 +3,13 @@
 use std::collections::HashMap;
 
 use crate::files::last_segment;
+use crate::formats::photos::same_name;
 use crate::formats::poses::position_list::number_of_photo;
 
 /// How the names of a list match those of photos: the first of these ways in which any of them do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Way {
-    /// The file's name without its folder, whatever its case.
+    /// The file's name without its folder, whatever its case and whether its accents stand apart.
     Name,
     /// The same without the extension.
     Stem,
@@ -18,7 +19,7 @@ enum Way {
 
 impl Way {
     fn key(self, name: &str) -> Option<String> {
-        let name = last_segment(name).trim().to_lowercase();
+        let name = same_name::key(last_segment(name).trim());
         match self {
             Self::Name => Some(name),
             Self::Stem => Some(match name.rsplit_once('.') {
@@ -114,6 +115,19 @@ mod tests {
         assert_eq!(found(&photos, &["IMG_3.JPG", "IMG_1.JPG"]), [None, Some(0)]);
         // One way for a whole list: "IMG_1" beside whole names is another photo.
         assert_eq!(found(&photos, &["IMG_1", "IMG_2.JPG"]), [None, Some(1)]);
+    }
+
+    /// Positions of photos in a folder as macOS wrote it, for a model from elsewhere.
+    #[test]
+    fn accents_apart_are_the_same_letters() {
+        let photos = ["a/B\u{f6}schung_1.JPG", "a/Bo\u{308}schung_2.JPG"];
+        let list = [
+            "Bo\u{308}schung_1.JPG",
+            "b\u{f6}schung_2.jpg",
+            "Boschung_1.JPG",
+        ];
+        assert_eq!(found(&photos, &list), [Some(0), Some(1), None]);
+        assert_eq!(found(&photos, &["Bo\u{308}schung_1"]), [Some(0)]);
     }
 
     #[test]

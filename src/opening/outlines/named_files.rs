@@ -6,6 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::files::{last_segment, unreadable_folder};
+use crate::formats::photos::same_name;
 use crate::formats::{FileError, MaskFile};
 
 /// More files are no folder of outlines.
@@ -127,7 +128,7 @@ pub(super) fn names(path: &Path, file: &MaskFile, photo: &str, photos: &[&str]) 
         .iter()
         .any(|other| is_namesake(other, photo) && folders_shared(path, other) > shared);
     let may_name =
-        |other: &str| stem(other) == stem(photo) && (other == photo || !photos.contains(&other));
+        |other: &str| is_of_stem(other, photo) && (other == photo || !photos.contains(&other));
     !lies_with_another && file.photos().any(may_name)
 }
 
@@ -147,7 +148,12 @@ pub(super) fn with_photo<'a>(
 
 /// Whether the files of two photos have one name, whatever folders they are in.
 pub(super) fn is_namesake(one: &str, other: &str) -> bool {
-    stem(one).eq_ignore_ascii_case(stem(other))
+    same_name::key(stem(one)) == same_name::key(stem(other))
+}
+
+/// The same, where the case of letters counts.
+pub(super) fn is_of_stem(one: &str, other: &str) -> bool {
+    same_name::is_same(stem(one), stem(other))
 }
 
 /// The folders of a photo's name, the last first.
@@ -166,7 +172,7 @@ pub(super) fn folders_shared(path: &Path, photo: &str) -> usize {
     let above = path.ancestors().skip(1).filter_map(Path::file_name);
     folders(photo)
         .zip(above)
-        .take_while(|(its, own)| own.eq_ignore_ascii_case(its))
+        .take_while(|(its, own)| same_name::key(&own.to_string_lossy()) == same_name::key(its))
         .count()
 }
 
@@ -182,14 +188,11 @@ pub(super) fn is_told_apart(path: &Path, photo: &str, photos: &[&str]) -> bool {
 /// A photo's name with its folders and without what is behind its last dot, as fragscale calls files of photos of one name.
 fn with_folders(photo: &str) -> String {
     let whole = photo.rsplit_once('.').map_or(photo, |(whole, _)| whole);
-    whole.replace(['/', '\\'], "_").to_lowercase()
+    same_name::key(&whole.replace(['/', '\\'], "_"))
 }
 
 fn lower_name(path: &Path) -> String {
-    path.file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_lowercase()
+    same_name::key(&path.file_name().unwrap_or_default().to_string_lossy())
 }
 
 fn is_picture(path: &Path) -> bool {
@@ -250,7 +253,7 @@ pub(super) fn may_be_outlines(path: &Path) -> bool {
 /// Whether a file is the photo itself.
 pub(super) fn is_photo(path: &Path, photo: &str) -> bool {
     let name = path.file_name().and_then(|name| name.to_str());
-    name.is_some_and(|name| name.to_lowercase() == last_segment(photo).to_lowercase())
+    name.is_some_and(|name| same_name::key(name) == same_name::key(last_segment(photo)))
 }
 
 /// How a file of one photo tells which.
@@ -269,14 +272,14 @@ pub(super) fn told(path: &Path, photo: &str) -> Option<Told> {
     if is_photo(path, photo) {
         return None;
     }
-    let name = path.file_name()?.to_str()?.to_lowercase();
+    let name = same_name::key(path.file_name()?.to_str()?);
     let ending = |of_photo: String| {
         let ending = name.strip_prefix(of_photo.as_str())?;
         let known = ENDINGS.iter().position(|known| ending == *known);
         let of_model = ending.starts_with('_') && ending.ends_with("_pred.tif");
         known.or(of_model.then_some(ENDINGS.len()))
     };
-    if let Some(ending) = ending(stem(photo).to_lowercase()) {
+    if let Some(ending) = ending(same_name::key(stem(photo))) {
         return Some(Told {
             folders: folders_shared(path, photo),
             is_by_name_alone: true,
@@ -291,7 +294,7 @@ pub(super) fn told(path: &Path, photo: &str) -> Option<Told> {
 }
 
 /// The last part of a path without what is behind its last dot.
-pub(super) fn stem(name: &str) -> &str {
+fn stem(name: &str) -> &str {
     let name = last_segment(name);
     name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }

@@ -10,7 +10,7 @@ use crate::formats::photos::photo_metadata;
 use crate::formats::{FileError, MaskFile, Masks, OutlinedPhoto};
 use crate::outlines::named_files::{
     also_taken_by, candidates, files_below, files_of_many, folders_shared, has_folder, is_anothers,
-    is_namesake, is_photo, is_told_apart, may_be_outlines, names, stem, told, with_photo,
+    is_namesake, is_of_stem, is_photo, is_told_apart, may_be_outlines, names, told, with_photo,
 };
 use crate::outlines::turned;
 use crate::picture;
@@ -99,12 +99,12 @@ impl OutlinesOfOthers {
             Place::File(file) if file.is_of_one() => Vec::new(),
             Place::File(file) => file
                 .photos()
-                .filter(|other| of_none(&|photo| stem(photo) == stem(other)))
+                .filter(|other| of_none(&|photo| is_of_stem(photo, other)))
                 .map(str::to_owned)
                 .collect(),
             Place::OfMany(files) => (files.iter())
                 .flat_map(|(_, file)| file.photos())
-                .filter(|other| of_none(&|photo| stem(photo) == stem(other)))
+                .filter(|other| of_none(&|photo| is_of_stem(photo, other)))
                 .map(str::to_owned)
                 .collect(),
             Place::Folder(files) => files

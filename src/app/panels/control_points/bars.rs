@@ -3,6 +3,7 @@
 use crate::command::Command;
 use crate::control::ScaleBar;
 use crate::control_points::ControlStep;
+use crate::names::unbroken;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::panels::field::{combo_box, number_field, settled, text_field};
@@ -110,5 +111,7 @@ fn measured(open: &OpenFlight, bar: &ScaleBar, ui: &mut egui::Ui) {
     let here = length * parts.unit.metres() / bar.unit.metres();
     let percent = 100.0 * (here / bar.length - 1.0);
     let (here, unit) = (significant_digits(here, 5), bar.unit);
-    ui.label(format!("{here} {unit} in the flight, {percent:+.2} % off"));
+    ui.label(unbroken(&format!(
+        "{here} {unit} in the flight, {percent:+.2} % off"
+    )));
 }

@@ -9,6 +9,7 @@ use crate::command::Command;
 use crate::control::{ControlPoint, POOR_PX};
 use crate::control_points::ControlStep;
 use crate::files::last_segment;
+use crate::names::unbroken;
 use crate::open_flight::OpenFlight;
 use crate::panels::field::{field_of, text_field};
 
@@ -119,8 +120,11 @@ fn fits(open: &OpenFlight, place: usize, point: &ControlPoint, ui: &mut egui::Ui
         if let Some((found, length, used)) = residual(open, &point.name) {
             let unit = found.unit;
             match used {
-                true => ui.label(format!("{length:.3} {unit} off")),
-                false => ui.colored_label(warn, format!("{length:.3} {unit} off, not used")),
+                true => ui.label(unbroken(&format!("{length:.3} {unit} off"))),
+                false => {
+                    let text = unbroken(&format!("{length:.3} {unit} off, not used"));
+                    ui.colored_label(warn, text)
+                }
             };
         }
     });

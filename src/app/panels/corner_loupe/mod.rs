@@ -7,6 +7,7 @@ use super::corner_marks::{CORNER_ROOM, draw_corner, nearest_inside};
 use crate::command::Command;
 use crate::corner_loupe::{CROP, CornerTriangle};
 use crate::flight::{Doubt, PhotoReview};
+use crate::names::unbroken;
 use crate::open_flight::OpenFlight;
 use crate::scale::{Corner, CornerOutcome};
 use crate::state::State;
@@ -133,7 +134,7 @@ pub(super) fn corner_loupe(
         if response.on_hover_text("Click to go there").clicked() {
             commands.push(Command::GoToCorner(corner.name));
         }
-        ui.add(egui::Label::new(text).wrap());
+        ui.add(egui::Label::new(unbroken(&text)).wrap());
     }
 }
 

@@ -357,8 +357,9 @@ fn start(held: &FromPhotos, form: &FromPhotosForm, ui: &mut egui::Ui, commands: 
             ui.separator();
         }
     }
+    // What a field says that this click leaves comes first: the button must not wait for the next frame.
     let is_known = !form.node.chosen || form.node.typed().is_ok();
-    let ready = held.photos().is_some() && *form == held.form && is_known;
+    let ready = held.photos().is_some() && is_known;
     let button = ui.add_enabled(ready, egui::Button::new("Start"));
     button.widget_info(|| {
         egui::WidgetInfo::labeled(egui::Role::Button, ready, "Start reconstruction")

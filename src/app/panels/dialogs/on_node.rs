@@ -2,6 +2,7 @@
 
 use std::sync::PoisonError;
 
+use super::named_field;
 use crate::from_photos::{Ended, FromNode, FromPhotos, NodeForm, Secret};
 use crate::names;
 use crate::panels::field::hinted_field;
@@ -10,15 +11,18 @@ use crate::panels::field::hinted_field;
 pub(super) fn node_rows(form: &mut NodeForm, ui: &mut egui::Ui) {
     // What the labels leave.
     let width = (ui.available_width() - 60.0).max(160.0);
+    let mut is_typed = false;
     egui::Grid::new("node").num_columns(2).show(ui, |ui| {
         let label = "Address";
         ui.label(label);
         let hover = "Of a NodeODM or ClusterODM. The photos go there and nowhere else, with where they were taken and \
                      their gcp_list.txt if there is one";
         let hint = "http://localhost:3000 or https://host";
-        if let Some(typed) = hinted_field(ui, label, hover, &form.address, hint, width) {
-            form.address = typed;
-        }
+        // From the first letter on: Start is there before the field is left, and one click does both.
+        let field = egui::TextEdit::singleline(&mut form.address).hint_text(hint);
+        let field = ui.add(field.desired_width(width));
+        is_typed = field.has_focus();
+        named_field(field, label, hover, &form.address);
         ui.end_row();
         let label = "Token";
         ui.label(label);
@@ -42,7 +46,9 @@ pub(super) fn node_rows(form: &mut NodeForm, ui: &mut egui::Ui) {
         }
         ui.end_row();
     });
-    if !form.address.trim().is_empty()
+    // Half of an address is no error.
+    if !is_typed
+        && !form.address.trim().is_empty()
         && let Err(fault) = form.typed()
     {
         ui.colored_label(ui.visuals().error_fg_color, fault.to_string());

@@ -3,6 +3,7 @@
 use crate::command::Command;
 use crate::flight::{DecisionKind, PhotoReview};
 use crate::open_flight::OpenFlight;
+use crate::panels::note::NoteField;
 
 /// Draws the decision, the note, and what can be decided.
 pub(super) fn decision(
@@ -28,33 +29,22 @@ pub(super) fn decision(
         ui.add(egui::Label::new(text).wrap());
     }
     let decided = reviewed.decision.map(|decision| decision.kind);
-    let saved = reviewed.decision.map_or("", |decision| &decision.note);
-    let id = ui.scope_id().with(("note", open.number, photo));
-    // What is being typed; what undo brings back is shown where nothing is.
-    let typed: Option<String> = ui.data(|data| data.get_temp(id));
-    let mut note = typed.unwrap_or_else(|| saved.to_owned());
-    let field = egui::TextEdit::singleline(&mut note).hint_text("Note: why");
-    let field = ui.add(field.desired_width(f32::INFINITY));
-    field.widget_info(|| {
-        let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Note on the photo");
-        info.current_text_value = Some(note.clone());
-        info
-    });
+    let field = NoteField {
+        id: egui::Id::unique("note on the photo"),
+        label: "Note on the photo",
+        hint: "Note: why",
+        enter: None,
+    };
+    let note = field.show(open, photo, ui, commands);
     if decided.is_none() && !note.is_empty() {
         let text = "A note is kept with a decision: accept the photo, or leave it out.";
         let text = egui::RichText::new(text).color(ui.visuals().warn_fg_color);
         ui.add(egui::Label::new(text).wrap());
     }
-    let mut decide = |kind: Option<DecisionKind>, ui: &egui::Ui| {
+    let mut decide = |kind: Option<DecisionKind>| {
         let decision = kind.map(|kind| (kind, note.clone()));
         commands.push(Command::Decide(photo, decision));
-        ui.data_mut(|data| data.remove_temp::<String>(id));
     };
-    if field.lost_focus() && note != saved && decided.is_some() && since.is_empty() {
-        decide(decided, ui);
-    } else if field.changed() {
-        ui.data_mut(|data| data.insert_temp(id, note.clone()));
-    }
     ui.horizontal_wrapped(|ui| {
         let why_not = open.why_not_accepted(&reviewed);
         let can_accept = why_not.is_none();
@@ -67,21 +57,21 @@ pub(super) fn decision(
         accept.widget_info(|| labelled("Accept this photo", can_accept));
         let accept = accept.on_hover_text(hover).on_disabled_hover_text(hover);
         if accept.clicked() {
-            decide(Some(DecisionKind::Accepted), ui);
+            decide(Some(DecisionKind::Accepted));
         }
         let left_out = decided == Some(DecisionKind::LeftOut);
         let leave_out = ui.add(egui::Button::new("Leave out").selected(left_out));
         leave_out.widget_info(|| labelled("Leave this photo out", true));
         let hover = "It does not go along into the export, whatever its verdict";
         if leave_out.on_hover_text(hover).clicked() {
-            decide(Some(DecisionKind::LeftOut), ui);
+            decide(Some(DecisionKind::LeftOut));
         }
         if decided.is_some() {
             let take_back = ui.button("Take back");
             take_back.widget_info(|| labelled("Take the decision back", true));
             let hover = "Decide nothing: the photo goes along if nothing speaks against it";
             if take_back.on_hover_text(hover).clicked() {
-                decide(None, ui);
+                decide(None);
             }
         }
     });

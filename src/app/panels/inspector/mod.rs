@@ -317,7 +317,7 @@ fn in_the_middle(painter: &egui::Painter, frame: Rect, text: &str, color: Color3
     painter.galley(place.min, galley, color);
 }
 
-/// A bar with its scale, which stays inside the frame: in rows where that is narrow, because with its first
+/// A bar with its scale, which stays inside the frame: where that is narrow its length alone, because with its first
 /// digit cut off it would be another number.
 pub(super) fn draw_bar(
     painter: &egui::Painter,
@@ -339,10 +339,18 @@ pub(super) fn draw_bar(
         BarEdge::Bottom => (vec2(0.0, -7.0), egui::Align2::CENTER_BOTTOM),
     };
     let at = from.lerp(to, 0.5) + gap;
-    let text = format!("{}  {}", bar.edge.as_str(), bar.text);
     let font = egui::FontId::proportional(13.0);
     let widest = frame.width() - 8.0;
-    let galley = painter.layout(text, font, Color32::WHITE, widest);
+    let layout = |words: &str| {
+        let text = names::unbroken(&format!("{}  {words}", bar.edge.as_str()));
+        painter.layout(text, font.clone(), Color32::WHITE, widest)
+    };
+    let whole = layout(&bar.text);
+    // In a small picture two rows at each edge would hide it: the scale itself stands below, or in the table.
+    let galley = match (whole.rows.len(), bar.text.split_once(" · ")) {
+        (2.., Some((length, _))) => layout(length),
+        _ => whole,
+    };
     let place = anchor.anchor_size(at, galley.size());
     let (least, most) = (frame.left() + 4.0, frame.right() - 4.0 - place.width());
     let place = place.translate(vec2(

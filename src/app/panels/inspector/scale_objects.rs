@@ -7,7 +7,7 @@ use crate::names::unbroken;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::tracing::{Trace, Tracing};
-use crate::panels::field::{number_field, settled, text_field};
+use crate::panels::field::{being_typed, number_field, number_of, settled, text_field};
 use crate::panels::rows::Rows;
 use crate::panels::shown_per;
 use crate::panels::verdict::{or_dash, verdict_color};
@@ -70,19 +70,26 @@ fn begin(
         ScaleObjectKind::Bar => ("Length", "Length of the next bar"),
     };
     ui.horizontal_wrapped(|ui| {
-        let command = (action.command)(state);
-        let button = ui.add_enabled(command.is_some(), egui::Button::new(action.label));
+        // The field is left by the click on the button, which has to be there before.
+        let typed = being_typed(ui, label).and_then(|typed| number_of(&typed).ok());
+        let is_size = |size: f64| size > 0.0;
+        let can_begin = (action.command)(state).is_some() || typed.is_some_and(is_size);
+        let button = ui.add_enabled(can_begin, egui::Button::new(action.label));
         let button = button.on_disabled_hover_text("Type its size first");
-        if button.on_hover_text(action.hover).clicked() {
-            commands.extend(command);
-        }
+        let begins = button.on_hover_text(action.hover).clicked();
         ui.label(name);
         let text = size.map_or_else(String::new, |size| size.to_string());
         let hover = "As it was measured, in the unit of the flight's world";
         let typed = text_field(ui, label, hover, &text, 60.0);
         ui.label(open.flight().parts().unit_of_lengths());
-        if let Some(size) = settled(ui, label, typed) {
+        let is_left = typed.is_some();
+        let size = settled(ui, label, typed);
+        if let Some(size) = size {
             commands.push(Command::Trace(Trace::Size(kind, size)));
+        }
+        // Not by the size of before where another one was typed that is none.
+        if begins && (!is_left || size.is_some_and(is_size)) {
+            commands.push(Command::Trace(Trace::Begin(kind)));
         }
     });
 }

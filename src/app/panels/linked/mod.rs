@@ -8,6 +8,7 @@ use super::inspector::traced_photo::PhotoPlace;
 use crate::command::Command;
 use crate::geometry::Ray;
 use crate::linked::{LinkedPoint, PointFrom};
+use crate::names::unbroken;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::scale::Sighting;
@@ -87,7 +88,9 @@ pub(crate) fn beside(
     let Some(at) = at else {
         return;
     };
-    let words = words(state, open, linked).join("\n");
+    let words = words(state, open, linked);
+    let words: Vec<String> = words.iter().map(|line| unbroken(line)).collect();
+    let words = words.join("\n");
     // In a narrow frame in more lines: a number with its first digits cut off is another one.
     let room = frame.shrink(6.0);
     let font = FontId::proportional(12.0);
@@ -164,6 +167,23 @@ pub(crate) fn copy(
     }
 }
 
+/// What the mouse over a part of the window points at is looked for whenever its ray is another one: the mouse moved, or
+/// a key changed the photo or the view under it. Beside a photo there is no ray.
+pub(crate) fn hover(
+    open: &OpenFlight,
+    from: PointFrom,
+    ray: Option<Ray>,
+    commands: &mut Vec<Command>,
+) {
+    let is_other = match ray {
+        Some(ray) => open.pointer.asked != Some((from, ray)),
+        None => open.pointer.from.is_some(),
+    };
+    if is_other {
+        commands.push(Command::Hover(from, ray));
+    }
+}
+
 /// The linked cursor on a photo: the mouse over it points at the surface, and what is pointed at anywhere
 /// glows on it.
 #[expect(
@@ -190,7 +210,6 @@ pub(super) fn on_photo(
             commands.push(Command::Hover(from, None));
         }
         Some(at) if !is_frozen && !response.dragged() => {
-            let moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO);
             let pixel = place.pixel_under(at);
             let direction = place.image.direction(place.camera, pixel).ok();
             let direction = direction.filter(|_| place.camera.contains(pixel));
@@ -198,9 +217,7 @@ pub(super) fn on_photo(
                 origin: pose.center,
                 direction: (pose.rotation * direction).normalize(),
             });
-            if moved && (ray.is_some() || open.pointer.from == Some(from)) {
-                commands.push(Command::Hover(from, ray));
-            }
+            hover(open, from, ray, commands);
         }
         _ => {}
     }

@@ -7,6 +7,7 @@ mod overlays;
 use egui::{Color32, Key, Modifiers, Pos2, Rect, Sense, Vec2, pos2, vec2};
 use glam::DVec2;
 
+use super::accessible::{described, scales_in_words};
 use super::corner_loupe;
 use super::fragments::OnPhoto;
 use super::inspector::tint::{self, Tint};
@@ -14,6 +15,7 @@ use super::inspector::traced_photo::{self, Dragged, PhotoPlace};
 use super::inspector::{draw_bar, message, waiting};
 use super::linked;
 use crate::command::Command;
+use crate::exports::PhotoLine;
 use crate::flight::PhotoReview;
 use crate::linked::PointFrom;
 use crate::open_flight::OpenFlight;
@@ -58,6 +60,7 @@ impl PhotoPanel {
             let label = format!("Photo view {}", reviewed.name());
             egui::WidgetInfo::labeled(egui::Role::Image, true, label)
         });
+        described(&response, || in_words(state, open, photo));
         keys(ui, commands);
         let is_fragments = state.page == Page::Fragments;
         if !is_fragments {
@@ -140,6 +143,20 @@ impl PhotoPanel {
             commands,
         );
     }
+}
+
+/// What is shown, for who does not see it: which photo of how many, and its scales.
+fn in_words(state: &State, open: &OpenFlight, photo: usize) -> String {
+    let place = format!("photo {} of {}", photo + 1, open.review.count());
+    let Some(row) = open.row(photo) else {
+        return place;
+    };
+    let line = PhotoLine {
+        unit: state.preferences.unit(),
+        to_type: true,
+        ..row.line
+    };
+    format!("{place}, {}", scales_in_words(&line))
 }
 
 /// The keys that this panel alone has: the arrows to the sides go to the next photo, as those up and down.

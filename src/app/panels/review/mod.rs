@@ -13,6 +13,7 @@ use crate::names::{self, unbroken};
 use crate::open_flight::OpenFlight;
 use crate::panels::Scrolled;
 use crate::panels::inspector::{Inspector, Offer, SIZE_ERROR, remedy_button};
+use crate::panels::note::NoteField;
 use crate::panels::verdict::{verdict_color, verdict_sign};
 use crate::reviewing::note_field;
 use crate::state::State;
@@ -172,23 +173,16 @@ fn decide(
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
 ) {
-    let mut note = state.note_of_review();
-    let field = egui::TextEdit::singleline(&mut note).id(note_field());
-    let field = field
-        .hint_text("Note: why (W)")
-        .desired_width(f32::INFINITY);
-    let field = ui.add(field);
-    field.widget_info(|| {
-        let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Note of the review");
-        info.current_text_value = Some(note.clone());
-        info
-    });
-    if field.changed() {
-        commands.push(Command::Review(ReviewStep::Note(note)));
-    }
-    if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
-        commands.extend((actions::review::ACCEPT.command)(state));
-    }
+    let Some(open) = state.open.as_deref() else {
+        return;
+    };
+    let field = NoteField {
+        id: note_field(),
+        label: "Note of the review",
+        hint: "Note: why (W)",
+        enter: (actions::review::ACCEPT.command)(state),
+    };
+    field.show(open, photo, ui, commands);
     let decided = reviewed.decision.map(|decision| decision.kind);
     let is = |kind| decided == Some(kind) && !reviewed.waits_for_decision();
     let accepted = is(DecisionKind::Accepted);
@@ -202,8 +196,7 @@ fn decide(
             ui,
             commands,
         );
-        let open = state.open.as_deref();
-        if let Some(why) = open.and_then(|open| open.why_not_accepted(&reviewed)) {
+        if let Some(why) = open.why_not_accepted(&reviewed) {
             accept.on_disabled_hover_text(why);
         }
         button(

@@ -17,12 +17,7 @@ pub(in crate::panels) fn row_menu(
     let Some(reviewed) = open.review.photo(photo) else {
         return;
     };
-    let note = || {
-        reviewed
-            .decision
-            .map_or_else(String::new, |d| d.note.clone())
-    };
-    let decide = |kind| Command::Decide(photo, Some((kind, note())));
+    let decide = |kind| Command::Decide(photo, Some((kind, open.note_of(photo).to_owned())));
     let select = || Command::Select(Some(photo));
     let why_not = open.why_not_accepted(&reviewed);
     let nothing_decided = reviewed.decision.is_none();

@@ -51,6 +51,9 @@ impl State {
             }
             FromPhotosStep::Colmap(installed) => self.from_photos.colmap = Some(installed),
             FromPhotosStep::Fill(form) => self.fill_from_photos(form),
+            FromPhotosStep::Start if self.work.is_running(Task::LOOK_AT_PHOTOS) => {
+                self.from_photos.starts_then = true;
+            }
             FromPhotosStep::Start => self.start_reconstructing(),
             FromPhotosStep::Pause(paused) => self.work.pause(Task::RECONSTRUCT, paused),
             FromPhotosStep::Open => {
@@ -95,6 +98,7 @@ impl State {
     fn look_at_photos(&mut self) {
         self.work.cancel(Task::LOOK_AT_PHOTOS);
         self.from_photos.found = None;
+        self.from_photos.starts_then = false;
         let form = &self.from_photos.form;
         // Half of a path that is being typed is no folder.
         let Some(folder) = typed(&form.photos).filter(|folder| folder.is_dir()) else {
@@ -114,7 +118,11 @@ impl State {
             }
         };
         self.start(Task::LOOK_AT_PHOTOS, work, |state, found| {
+            let can_start = found.photos.is_ok();
             state.from_photos.found = Some(found);
+            if std::mem::take(&mut state.from_photos.starts_then) && can_start {
+                state.start_reconstructing();
+            }
         });
     }
 

@@ -389,6 +389,21 @@ fn shapes_of_cvat_are_read() {
     assert_eq!(far.what, "xtl='inf' is no number");
 }
 
+/// As CVAT on a Mac exports it, for photos whose list of poses is from elsewhere.
+#[test]
+fn accents_apart_are_the_same_letters() {
+    let text = coco(&annotation(1, PLAIN)).replace("IMG_0005", "Bo\u{308}schung_5");
+    let file = MaskFile::from_bytes(text.into_bytes()).unwrap();
+    for (name, is_it) in [
+        ("a/B\u{f6}schung_5.JPG", true),
+        ("B\u{f6}schung_5.png", true),
+        ("Boschung_5.JPG", false),
+    ] {
+        let masks = file.of_photo(&OutlinedPhoto { name, ..PHOTO });
+        assert_eq!(masks.is_ok(), is_it, "{name}");
+    }
+}
+
 fn geojson(geometry: &str) -> String {
     format!(
         "{{\"type\":\"FeatureCollection\",\"features\":[{{\"type\":\"Feature\",\"geometry\":{geometry},\"properties\":{{}}}}]}}"

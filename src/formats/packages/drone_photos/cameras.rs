@@ -61,14 +61,7 @@ impl Cameras {
 
     /// "DJI FC6310R", and a number where that name is taken.
     fn name(&self, photo: &PhotoMetadata) -> String {
-        let make = photo.make.as_deref().unwrap_or_default();
-        let model = photo.model.as_deref().unwrap_or("camera");
-        // Some models begin with the maker's name.
-        let name = if model.to_lowercase().starts_with(&make.to_lowercase()) {
-            model.to_owned()
-        } else {
-            format!("{make} {model}")
-        };
+        let name = photo.camera_name();
         let is_free = |name: &String| self.cameras.iter().all(|(_, c, _)| c.name != *name);
         let numbered = (2..).map(|number| format!("{name} {number}"));
         let mut names = std::iter::once(name.clone()).chain(numbered);

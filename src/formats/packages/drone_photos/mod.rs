@@ -32,6 +32,7 @@ use glam::DVec3;
 use crate::fault::{Fault, first_names};
 use crate::files::FileError;
 use crate::jobs::Progress;
+use crate::packages::LOOKED_AT;
 use crate::packages::pose_covariance::PoseCovariance;
 use crate::packages::reconstruction::{
     MeasuredPosition, PosedPhoto, Project, Reconstruction, Sizes,
@@ -44,11 +45,40 @@ pub use cameras::Cameras;
 const RECONSTRUCT: &str = "these are photos alone; where they overlap, 'fragscale reconstruct' or File > New from \
      photos… makes a flight of them";
 
+/// Photos alone: what they say, and the flight that they make.
+#[derive(Debug)]
+pub struct PhotosAlone {
+    /// Those that can be read, by name.
+    pub photos: Vec<(String, PhotoMetadata)>,
+    /// Their flight; else why none of them can be placed.
+    pub project: Result<Project, Fault>,
+}
+
+/// Whether one of a folder's photos, of as many as are looked at, says where it was taken and which way its camera looked.
+pub(crate) fn has_placed(folder: &Path) -> bool {
+    let says_both = |photo: PhotoMetadata| {
+        let is_somewhere = photo.place.is_some_and(|place| place.height.is_some());
+        is_somewhere && photo.orientation.is_some()
+    };
+    let photos = photos_in(folder).unwrap_or_default();
+    let mut looked_at = photos.iter().take(LOOKED_AT);
+    looked_at.any(|photo| photo_metadata::read_file(photo).is_ok_and(says_both))
+}
+
 /// Reads a folder of photos, or one photo.
 ///
 /// # Errors
 /// Where no photo says where it was taken and which way its camera looked.
 pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileError> {
+    let project = read_alone(path, progress)?.project;
+    project.map_err(|fault| FileError::new(path, fault))
+}
+
+/// The same, but photos that cannot be placed are read, too.
+///
+/// # Errors
+/// Where the folder cannot be read, or an .MRK in it.
+pub fn read_alone(path: &Path, progress: &Progress) -> Result<PhotosAlone, FileError> {
     let (folder, files) = if path.is_dir() {
         (path.to_owned(), photos_in(path)?)
     } else {
@@ -66,7 +96,29 @@ pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
             Err(error) => left_out.add("cannot be read", format!("{name}: {}", error.fault)),
         }
     }
-    let mut warnings = marks::correct(&folder, &mut photos)?;
+    let warnings = marks::correct(&folder, &mut photos)?;
+    let found = reconstruction_of(&photos, left_out, files.len(), warnings);
+    Ok(PhotosAlone {
+        project: found.map(|reconstruction| Project {
+            reconstruction,
+            photos: Some(folder),
+            surface_note: Some(RECONSTRUCT.to_owned()),
+            ..Project::default()
+        }),
+        photos,
+    })
+}
+
+/// The flight of these photos, of `count` with those that are left out already.
+///
+/// # Errors
+/// Where none can be placed.
+fn reconstruction_of(
+    photos: &[(String, PhotoMetadata)],
+    mut left_out: LeftOut,
+    count: usize,
+    mut warnings: Vec<String>,
+) -> Result<Reconstruction, Fault> {
     let mut reconstruction = Reconstruction {
         package: "photos",
         crs: Some("EPSG:4326".to_owned()),
@@ -75,7 +127,7 @@ pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
     };
     let mut cameras = Cameras::default();
     let mut posed = Vec::new();
-    for (name, metadata) in &photos {
+    for (name, metadata) in photos {
         let Some(place) = metadata.place else {
             left_out.add("have no position", name.clone());
             continue;
@@ -116,9 +168,9 @@ pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
         reconstruction.crs = Some("EPSG:4979".to_owned());
     }
     if reconstruction.photos.is_empty() {
-        return Err(FileError::new(path, left_out.all(files.len())));
+        return Err(left_out.all(count));
     }
-    warnings.extend(left_out.sentences(files.len()));
+    warnings.extend(left_out.sentences(count));
     warnings.extend(cameras.warnings(&posed));
     warnings.extend(of_places(&posed));
     let said = photos
@@ -128,12 +180,7 @@ pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
     reconstruction.errors.focal = cameras.largest_error().map(|error| error * 100.0);
     reconstruction.cameras = cameras.into_cameras();
     reconstruction.warnings = warnings;
-    Ok(Project {
-        reconstruction,
-        photos: Some(folder),
-        surface_note: Some(RECONSTRUCT.to_owned()),
-        ..Project::default()
-    })
+    Ok(reconstruction)
 }
 
 /// What places of a fix are in words, and the standard deviations that such receivers have towards east,

@@ -61,6 +61,19 @@ pub struct PhotoMetadata {
     pub warnings: Vec<String>,
 }
 
+impl PhotoMetadata {
+    /// What its camera is called, with its maker: "DJI FC6310R"; "camera" where nothing says it.
+    pub fn camera_name(&self) -> String {
+        let make = self.make.as_deref().unwrap_or_default();
+        let model = self.model.as_deref().unwrap_or("camera");
+        // Some models begin with the maker's name.
+        match model.to_lowercase().starts_with(&make.to_lowercase()) {
+            true => model.to_owned(),
+            false => format!("{make} {model}"),
+        }
+    }
+}
+
 /// Where a receiver was.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredPlace {

@@ -78,6 +78,29 @@ fn files_are_known_by_the_name_of_their_photo() {
     assert_eq!(of_none, ["IMG_00051_labels.png"]);
 }
 
+/// Label images as a Mac wrote them, for photos whose list of poses is from elsewhere.
+#[test]
+fn accents_apart_are_the_same_letters() {
+    let files = ["Bo\u{308}schung_1_labels.png", "Bo\u{308}schung_1.JPG"];
+    let files: Vec<PathBuf> = files
+        .iter()
+        .map(|name| Path::new("Su\u{308}d").join(name))
+        .collect();
+    let photos = ["S\u{fc}d/B\u{f6}schung_1.JPG", "B\u{f6}schung_1.JPG"];
+    let folder = OutlinesOfOthers {
+        path: "masks".into(),
+        of: None,
+        place: Place::Folder(files.clone()),
+    };
+    // The photo's folder tells which of the two it is of.
+    assert_eq!(
+        photos.map(|photo| folder.is_of(photo, &photos)),
+        [true, false]
+    );
+    let found: Vec<&Path> = candidates(&files, photos[0], &photos).collect();
+    assert_eq!(found, [&files[0]]);
+}
+
 /// As Roboflow and CVAT export it: one file of all photos, perhaps beside them.
 #[test]
 fn a_folder_may_hold_one_file_of_many_photos() {

@@ -41,16 +41,17 @@ pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Co
     // The difference may end in ...9999; seven digits are what a level has.
     let confidence = ((1.0 - settings.level) * 1e9).round() / 1e7;
     let mut bands = Table::new(format!("Bands of the fits alone, {confidence} %, {unit}"));
+    // With a column for each end of each size the table would be wider than any panel.
     bands.column("Curve", "Method, trial");
+    bands.column("Size", "Which share of the mass passes it");
+    for end in ["from", "to"] {
+        bands.column(end, "Of the confidence band of that size");
+    }
     for percent in PERCENTILES {
         percentiles.column(
             format!("P{percent}"),
             format!("{percent} % of the mass passes it"),
         );
-        for end in ["from", "to"] {
-            let hover = format!("Of the confidence band of P{percent}");
-            bands.column(format!("P{percent} {end}"), hover);
-        }
     }
     for FittedCurve {
         labels,
@@ -76,8 +77,11 @@ pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Co
             Some(band) => band.map(|end| number(end, 4)),
             None => [number(None, 4), number(None, 4)],
         };
-        let cells = sizes.iter().flat_map(ends);
-        bands.row([labels.to_string()].into_iter().chain(cells).collect());
+        for size in sizes {
+            let [from, to] = ends(size);
+            let name = format!("P{}", size.percent);
+            bands.row(vec![labels.to_string(), name, from, to]);
+        }
     }
     parameters.show(ui, commands);
     percentiles.show(ui, commands);
