@@ -172,12 +172,12 @@ impl State {
                 let changed =
                     self.undo_picks_or_settings(History::undo, History::undo, History::undo);
                 // Else the last word at the foot of the window may be "saved".
-                self.say(Severity::Note, &with_what("undone", &changed));
+                self.say_undone(&with_what("undone", &changed));
             }
             Command::Redo => {
                 let changed =
                     self.undo_picks_or_settings(History::redo, History::redo, History::redo);
-                self.say(Severity::Note, &with_what("done again", &changed));
+                self.say_undone(&with_what("done again", &changed));
             }
             Command::Set(after) => {
                 // Made of those of the frame's beginning, which another command may have changed since.
@@ -255,6 +255,7 @@ impl State {
             || self.work.is_writing()
             || self.has_lost_points()
             || self.distributions.has_unsaved()
+            || self.has_notes_to_take()
     }
 
     fn has_lost_points(&self) -> bool {
@@ -264,6 +265,7 @@ impl State {
 
     /// Leaves the flight on the screen, unless something would be lost: then asks first.
     pub(crate) fn leave(&mut self, leaving: Leaving) {
+        self.take_notes();
         let writes = leaving == Leaving::Quit && self.work.is_writing();
         let is_lost = match &self.open {
             // What was added stays.

@@ -94,6 +94,30 @@ impl State {
         self.forget_notes(&[photo]);
     }
 
+    /// Gives decisions that hold the notes that were typed of these photos since, as one step. What was decided stays, and the
+    /// reasons it was decided for: that goes while photos are still being looked at, too.
+    pub(crate) fn note_anew(&mut self, photos: &[usize]) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let mut noted = Vec::new();
+        let mut settings = open.settings();
+        for &photo in photos {
+            if let Some(decision) = open.noted_anew(photo) {
+                let decision = Decision {
+                    date: today(),
+                    ..decision
+                };
+                settings.decide(open.name(photo), Some(decision));
+                noted.push(photo);
+            }
+        }
+        if !noted.is_empty() {
+            self.set_settings(settings);
+            self.forget_notes(&noted);
+        }
+    }
+
     /// What was typed of these photos is in their decisions, or was taken back with them.
     fn forget_notes(&mut self, decided: &[usize]) {
         // Then nothing was decided.

@@ -5,7 +5,7 @@ use crate::command::{ReviewStep, Tab};
 use crate::flight::{Decision, DecisionKind, OnPhoto};
 use crate::open_flight::OpenFlight;
 use crate::size_distributions::Page;
-use crate::state::State;
+use crate::state::{Severity, State};
 
 /// The field of the note: a key brings the cursor into it.
 pub(crate) fn note_field() -> egui::Id {
@@ -110,13 +110,45 @@ impl State {
     /// Takes the note that was typed of a photo with its decision, where one holds: its field is left, or another
     /// photo is selected. Without a decision it waits for one.
     pub(crate) fn take_note(&mut self, photo: Option<usize>) {
-        let Some((photo, open)) = photo.zip(self.open.as_ref()) else {
+        self.note_anew(photo.as_slice());
+    }
+
+    /// Takes every note that has a decision now, before the flight is saved or left: undo and redo may have brought one back.
+    pub(crate) fn take_notes(&mut self) {
+        let Some(open) = &self.open else {
             return;
         };
-        let noted = open.noted_anew(photo);
-        if noted.is_some() {
-            self.decide(photo, noted);
-        }
+        let typed: Vec<usize> = open.reviewing.notes.keys().copied().collect();
+        self.note_anew(&typed);
+    }
+
+    /// Whether saving or leaving would take notes.
+    pub(crate) fn has_notes_to_take(&self) -> bool {
+        self.open.as_deref().is_some_and(|open| {
+            let mut typed = open.reviewing.notes.keys();
+            typed.any(|photo| open.noted_anew(*photo).is_some())
+        })
+    }
+
+    /// Warns of notes that are in no file, as nothing is decided of their photos.
+    pub(crate) fn warn_of_waiting_notes(&mut self) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let mut waiting = open.waiting_notes();
+        let Some(first) = waiting.next() else {
+            return;
+        };
+        let name = open.name(first);
+        let said = match waiting.count() {
+            0 => format!(
+                "a note on {name} is kept with a decision only: accept the photo or leave it out"
+            ),
+            more => format!(
+                "notes on {name} and {more} more are kept with decisions only: accept the photos or leave them out"
+            ),
+        };
+        self.say(Severity::Warning, &said);
     }
 
     /// Brings the photo back whose decision was undone or done again.

@@ -20,7 +20,8 @@ use crate::scale::Onto;
 pub(super) struct ExportArguments {
     #[command(flatten)]
     flight: FlightArguments,
-    /// The folder to export to; new, or one of an earlier export, which is then completed.
+    /// The folder to export to; new, or one of an earlier export, which is then completed. (What that has of photos that are
+    /// not written now, as where --photo names others, is taken away.)
     #[arg(long, value_name = "DIR")]
     to: PathBuf,
     /// Scales are in pixels per this unit.

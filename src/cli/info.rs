@@ -42,9 +42,17 @@ fn info_text(value: &Value) -> String {
     let are_photos_alone = value["kind"] == "photos";
     // Over time: a trajectory's and a recording's, which state no coordinate system, are of no photos yet.
     let are_poses_alone = value["kind"] == "poses" && value.get("crs").is_none();
+    let crs = value["crs"].as_str();
+    let is_camera = value["kind"] == "camera";
     for (key, value) in value.as_object().into_iter().flatten() {
         let shown = match value {
             Value::Null => "not stated".to_owned(),
+            Value::Number(_) if key == "speed" => format!("{} m/s", short(value)),
+            Value::Number(_) if ["safe_height", "return_height"].contains(&key.as_str()) => {
+                format!("{} m above the take-off", short(value))
+            }
+            Value::Object(_) if key == "take_off" => take_off(value),
+            Value::Object(_) if key == "bounds" => bounds(value, crs),
             Value::String(text) if key == "crs" => system(text),
             Value::String(text) => text.clone(),
             Value::Array(list) if key == "warnings" => {
@@ -75,6 +83,10 @@ fn info_text(value: &Value) -> String {
                 }
                 continue;
             }
+            Value::Array(list) if key == "cameras" && is_camera => {
+                text.extend(list.iter().map(camera));
+                continue;
+            }
             Value::Array(list) if key == "photos" && are_poses_alone => {
                 text += &format!("poses: {}\n", list.len());
                 continue;
@@ -85,6 +97,49 @@ fn info_text(value: &Value) -> String {
         text += &format!("{}: {shown}\n", key.replace('_', " "));
     }
     text
+}
+
+/// A number to a hundredth.
+fn short(number: &Value) -> String {
+    let number = number.as_f64().unwrap_or(f64::NAN);
+    ((number * 100.0).round() / 100.0).to_string()
+}
+
+/// Where a drone takes off, as `fragscale mission` says it.
+fn take_off(value: &Value) -> String {
+    let of = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+    let (latitude, longitude) = (of(&value["latitude"]), of(&value["longitude"]));
+    let elevation = &value["elevation"];
+    let elevation = elevation["above"].as_str().map(|above| {
+        let metres = of(&elevation["metres"]);
+        format!(", {metres:.2} m above {above}")
+    });
+    format!(
+        "{latitude:.7}, {longitude:.7}{}",
+        elevation.unwrap_or_default()
+    )
+}
+
+/// The least coordinates before the greatest, and what they are in where the system says one unit of all.
+fn bounds(value: &Value, crs: Option<&str>) -> String {
+    let crs = crs.and_then(|text| Crs::understand(text).ok());
+    let is_of_heights = |crs: &Crs| (crs.vertical_unit_metres() - crs.unit_metres()).abs() < 1e-9;
+    let unit = crs.filter(is_of_heights).and_then(|crs| crs.unit());
+    let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
+    format!("min {}, max {}{unit}", value["min"], value["max"])
+}
+
+/// A camera's name, size and focal length in a line.
+fn camera(value: &Value) -> String {
+    let name = value["name"].as_str().filter(|name| !name.is_empty());
+    let name = name.unwrap_or("not stated");
+    let (width, height) = (&value["width"], &value["height"]);
+    let [across, down] = ["fx", "fy"].map(|name| short(&value[name]));
+    let focal = match across == down {
+        true => across,
+        false => format!("{across} x {down}"),
+    };
+    format!("camera: {name}, {width} x {height} pixels, focal length {focal} px\n")
 }
 
 /// A coordinate system in a line: its code, of one in WKT the name, and the code where there is one.
@@ -154,6 +209,45 @@ mod tests {
             info_text(&photos),
             "camera: DJI FC6310R, 5472 x 3648 pixels, photos: 2\nkind: photos\nphotos: 2\npositions: 0\n"
         );
+    }
+
+    #[test]
+    fn a_mission_says_what_its_numbers_are_in() {
+        let elevation = json!({"metres": 488.931_017_520_017_63, "above": "the geoid EGM96"});
+        let take_off =
+            json!({"latitude": 34.98, "longitude": -106.612_345_678_9, "elevation": elevation});
+        let mission = json!({"kind": "mission", "take_off": take_off, "speed": 15.0, "safe_height": 20.5, "return_height": null});
+        assert_eq!(
+            info_text(&mission),
+            "kind: mission\nreturn height: not stated\nsafe height: 20.5 m above the take-off\nspeed: 15 m/s\n\
+             take off: 34.9800000, -106.6123457, 488.93 m above the geoid EGM96\n"
+        );
+        let on_ground =
+            json!({"take_off": {"latitude": 50.0, "longitude": 7.0, "elevation": null}});
+        assert_eq!(info_text(&on_ground), "take off: 50.0000000, 7.0000000\n");
+    }
+
+    #[test]
+    fn bounds_begin_with_the_least_and_have_the_unit_of_their_system() {
+        let cloud = |crs: Value| json!({"kind": "cloud", "crs": crs, "bounds": {"max": [4.0, 5.5, 6.0], "min": [1.0, 2.0, 3.0]}});
+        let line = |crs: Value| info_text(&cloud(crs)).lines().next().unwrap().to_owned();
+        let least = "bounds: min [1.0,2.0,3.0], max [4.0,5.5,6.0]";
+        assert_eq!(line(json!("EPSG:32633")), format!("{least} m"));
+        // Degrees with metres have no unit in common.
+        assert_eq!(line(json!("EPSG:4326")), least);
+        assert_eq!(line(Value::Null), least);
+    }
+
+    #[test]
+    fn a_camera_is_told_in_a_line() {
+        let camera = |fy: f64| {
+            let camera =
+                json!({"name": "bebop", "width": 1280, "height": 720, "fx": 980.254, "fy": fy});
+            info_text(&json!({"kind": "camera", "cameras": [camera], "warnings": []}))
+        };
+        let start = "camera: bebop, 1280 x 720 pixels, focal length 980.25";
+        assert_eq!(camera(980.254), format!("{start} px\nkind: camera\n"));
+        assert_eq!(camera(981.5), format!("{start} x 981.5 px\nkind: camera\n"));
     }
 
     /// Those of poses.csv are of photos.

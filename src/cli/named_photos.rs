@@ -8,8 +8,7 @@ use crate::flight::Flight;
 /// The argument.
 #[derive(Debug, Args)]
 pub(super) struct NamedPhotos {
-    /// Only this photo, as the flight names it; once for each of several. (What an earlier export in the same folder has of others is
-    /// taken away.)
+    /// Only this photo, as the flight names it; once for each of several.
     #[arg(long, value_name = "NAME")]
     photo: Vec<String>,
 }
@@ -27,7 +26,7 @@ impl NamedPhotos {
     pub(super) fn of(&self, flight: &Flight) -> Result<Vec<bool>, Fault> {
         let mut named = vec![self.photo.is_empty(); flight.parts().photos.len()];
         for name in &self.photo {
-            named[flight.photo_named(name)?] = true;
+            named[flight.photo_typed(name)?] = true;
         }
         Ok(named)
     }

@@ -99,6 +99,11 @@ impl AnswerArguments {
         }
     }
 
+    /// Whether it is CSV, in which notes have no place.
+    pub(super) fn is_csv(&self) -> bool {
+        matches!(self.format(), AnswerFormat::Csv)
+    }
+
     /// The chosen format, or what the file's name says: a table in a .csv is a table that no program reads.
     fn format(&self) -> AnswerFormat {
         let file = self.output.output.as_deref();

@@ -255,21 +255,12 @@ fn draw(
 ) -> Result<RgbaImage, Fault> {
     let flight = &opened.flight;
     let parts = flight.parts();
-    let named = |name: &str| {
-        let found = parts.photos.iter().position(|photo| photo.name == name);
-        found.ok_or_else(|| {
-            Fault::new(
-                format!("there is no photo '{name}'"),
-                format!("name one of the flight, like '{}'", parts.photos[0].name),
-            )
-        })
-    };
     let looked_through = match &arguments.view {
-        Viewpoint::Photo(name) => Some(named(name)?),
+        Viewpoint::Photo(name) => Some(flight.photo_typed(name)?),
         _ => None,
     };
     let selected = match &arguments.select {
-        Some(name) => Some(named(name)?),
+        Some(name) => Some(flight.photo_typed(name)?),
         None => looked_through,
     };
     if selected.is_none()

@@ -90,7 +90,8 @@ pub use size_distributions::{
     FitReport, FittedCurve, FittedDistribution, Marker, Panel, Series, SizeAxis, SizeTick,
     anova_csv, anova_json, anova_table, comparison_csv, comparison_json, comparison_notes,
     comparison_report, comparison_text, effort_csv, effort_json, effort_text, figure_of_comparison,
-    figure_of_fits, figure_png, figure_svg, fit_csv, fit_json, fit_table, points_of_curves_csv,
+    figure_of_fits, figure_png, figure_svg, fit_csv, fit_csv_warnings, fit_json, fit_table,
+    points_of_curves_csv,
 };
 pub use split_desktop::{
     ExportRequest, ExportSummary, Provenance, Replace, export_folders, export_for_split_desktop,

@@ -6,6 +6,7 @@
 //! recording     which files are opened on the way
 //! input         opening files: whole bytes, text, errors with the file's name
 //! last_segment  what a file is called, by a path that a text names
+//! same_name     whether two names of files are one, whatever their case and accents
 //! marks         what tells a file that fragscale wrote
 //! atomic        files and folders that are there whole or not at all
 //! ```
@@ -21,6 +22,7 @@ mod lock;
 mod marks;
 mod overwrite;
 mod recording;
+pub mod same_name;
 
 pub use atomic::write_whole;
 pub use atomic::{is_unfinished, make_folder_whole, remove_unfinished};

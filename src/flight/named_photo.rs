@@ -2,9 +2,27 @@
 
 use super::Flight;
 use crate::fault::Fault;
+use crate::files::same_name;
 
 impl Flight {
-    /// The place of the photo with this name.
+    /// The place of the photo that somebody types: where none has that name to the letter, the only one whose name a shell or a
+    /// file system spells so (`files::same_name`).
+    ///
+    /// # Errors
+    /// Where there is none; the nearest name is said.
+    pub fn photo_typed(&self, name: &str) -> Result<usize, Fault> {
+        self.photo_named(name).or_else(|fault| {
+            let wanted = same_name::key(name);
+            let photos = self.parts.photos.iter().zip(0..);
+            let mut alike = photos.filter(|(photo, _)| same_name::key(&photo.name) == wanted);
+            match (alike.next(), alike.next()) {
+                (Some((_, found)), None) => Ok(found),
+                _ => Err(fault),
+            }
+        })
+    }
+
+    /// The place of the photo with this name, as a file of the flight has it.
     ///
     /// # Errors
     /// Where there is none; the nearest name is said.

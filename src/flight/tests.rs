@@ -112,3 +112,31 @@ fn impossible_settings_are_refused() {
     bad.ground = Ground::At(f64::NAN);
     assert!(flight.with_settings(&bad).is_err());
 }
+
+/// A shell completes names as macOS spells them (U+0041 U+0308 for U+00C4); of two that differ in their case alone neither is meant.
+#[test]
+fn a_photo_is_named_as_a_shell_spells_it() {
+    let mut parts = flight().parts().clone();
+    let first = parts.photos[0].clone();
+    let names = ["H\u{c4}NGE 1.JPG", "b.jpg", "B.jpg"];
+    parts.photos = names
+        .map(|name| Photo {
+            name: name.to_owned(),
+            ..first.clone()
+        })
+        .to_vec();
+    let flight = Flight::new(parts).unwrap();
+    for (typed, found) in [
+        ("HA\u{308}NGE 1.JPG", 0),
+        ("h\u{e4}nge 1.jpg", 0),
+        ("b.jpg", 1),
+        ("B.jpg", 2),
+    ] {
+        assert_eq!(flight.photo_typed(typed), Ok(found), "{typed}");
+    }
+    for typed in ["B.JPG", "HANGE 1.JPG"] {
+        assert!(flight.photo_typed(typed).is_err(), "{typed}");
+    }
+    // A decision in a file is of the photo that it names.
+    assert!(flight.photo_named("h\u{e4}nge 1.jpg").is_err());
+}

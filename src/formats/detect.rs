@@ -195,7 +195,15 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         "csv" | "txt" if metashape::is_opk(&String::from_utf8_lossy(text)) => Kind::Poses,
         "log" | "txt" if open3d::is_log(&String::from_utf8_lossy(text)) => Kind::Poses,
         "geojson" | "json" if poses_opk::is_geojson(text) => Kind::Poses,
-        "csv" | "txt" | "xyz" | "asc" => Kind::Cloud(CloudFormat::Xyz),
+        "csv" | "txt" | "xyz" | "asc" => {
+            let whole = start.len() < DETECTED_BY;
+            if let Some(rows) = matrix(&String::from_utf8_lossy(text)).filter(|_| whole) {
+                let what = format!("a matrix of {rows} x {rows} numbers, no points");
+                let remedy = "give a cloud, or a camera's calibration with its photos' size";
+                return Err(FileError::new(path, Fault::new(what, remedy)));
+            }
+            Kind::Cloud(CloudFormat::Xyz)
+        }
         _ => {
             return Err(FileError::new(
                 path,
@@ -206,6 +214,25 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
             ));
         }
     })
+}
+
+/// How many rows and columns a text has that is nothing but a camera's matrix (3 x 3) or a pose's (4 x 4). Their last row is what
+/// tells them from three or four points.
+fn matrix(text: &str) -> Option<usize> {
+    let rows = text.lines().map(str::trim).filter(|row| !row.is_empty());
+    // Longer ones are none: a cloud is not split into all its numbers for that.
+    let rows: Vec<&str> = rows.take(5).collect();
+    let size = rows.len();
+    let numbers = |row: &str| -> Option<Vec<f64>> {
+        let fields = row.split([',', ';', ' ', '\t']);
+        let fields = fields.filter(|field| !field.is_empty());
+        fields.map(|field| field.parse().ok()).collect()
+    };
+    let rows: Vec<Vec<f64>> = rows.into_iter().map(numbers).collect::<Option<_>>()?;
+    let is_square = (3..=4).contains(&size) && rows.iter().all(|row| row.len() == size);
+    let (one, zeros) = rows.last()?.split_last()?;
+    let is_last = *one == 1.0 && zeros.iter().all(|zero| *zero == 0.0);
+    (is_square && is_last).then_some(size)
 }
 
 fn detect_folder(path: &Path) -> Result<Kind, FileError> {
@@ -256,4 +283,39 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
         Err(e) => unreadable_folder(&e),
     };
     Err(FileError::new(path, fault))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    /// K.txt of the photos of Sceaux, as openMVG's data sets have it, and a pose's matrix.
+    #[test]
+    fn matrices_are_no_clouds() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("K.txt");
+        let of = |text: &str| {
+            fs::write(&path, text).unwrap();
+            detect(&path)
+        };
+        for (text, size) in [
+            ("2905.88 0 1416 \r\n0 2905.88 1064\r\n0 0 1", 3),
+            ("1,0,0,5\n0,1,0,6\n0,0,1,7\n0,0,0,1\n", 4),
+        ] {
+            let fault = of(text).unwrap_err().fault;
+            let said = format!("a matrix of {size} x {size} numbers, no points");
+            assert_eq!(fault.what, said);
+        }
+        let cloud = Ok(Kind::Cloud(CloudFormat::Xyz));
+        for points in [
+            "1 2 3\n2 2 3\n3 2 3\n",
+            "0 0 0\n1 0 0\n0 1 0\n0 0 1\n",
+            "x y z\n1 2 3\n2 2 3\n0 0 1\n",
+            "1 2 3\n2 2 3\n2 3 3\n4 5 6\n0 0 1\n",
+        ] {
+            assert_eq!(of(points), cloud, "{points}");
+        }
+    }
 }

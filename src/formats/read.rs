@@ -14,8 +14,9 @@ use crate::geodesy::is_stated;
 use crate::jobs::Progress;
 use crate::packages::reconstruction::Project;
 use crate::packages::{metashape, open3d};
+use crate::photos::image_names::{Ending, is_called};
 use crate::poses::poses_csv::PosesFile;
-use crate::poses::position_list::{read_control_points, read_positions};
+use crate::poses::position_list::{ControlPoints, read_control_points, read_positions};
 use crate::poses::trajectory::{self, Trajectory, TrajectoryFormat};
 use crate::poses::{poses_csv, poses_opk};
 
@@ -61,21 +62,29 @@ fn known_places(path: &Path, format: CloudFormat) -> Option<Fault> {
     if format != CloudFormat::Xyz {
         return None;
     }
+    let of_photos = |count: usize| (format!("the positions of {count} photos"), "positions");
     let (what, option) = match (read_control_points(path), read_positions(path)) {
+        (Ok(list), _) if are_of_photos(&list) => of_photos(list.list.points.len()),
         (Ok(list), _) => (
             format!("{} ground control points", list.list.points.len()),
             "gcp",
         ),
-        (_, Ok(list)) => (
-            format!("the positions of {} photos", list.positions.len()),
-            "positions",
-        ),
+        (_, Ok(list)) => of_photos(list.positions.len()),
         _ => return None,
     };
     Some(Fault::new(
         format!("it holds {what}, not a surface"),
         format!("give it to 'fragscale georeference' as --{option}"),
     ))
+}
+
+/// Whether the points of a list are called as images are: then they are places of photos, whose columns a list of points has, too.
+fn are_of_photos(list: &ControlPoints) -> bool {
+    let points = &list.list.points;
+    !points.is_empty()
+        && points
+            .iter()
+            .all(|point| is_called(&point.name, Ending::Raw))
 }
 
 /// Reads a cloud or mesh that is in memory, as a file of that format. A glTF's buffers in files of
@@ -250,6 +259,25 @@ mod tests {
             "{error}"
         );
         assert!(error.fault.remedy.contains("--gcp"), "{error}");
+    }
+
+    /// As Pix4D writes it for senseFly's photos: names, latitude, longitude and two altitudes, which points have, too.
+    #[test]
+    fn places_called_as_photos_are_their_positions() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("geoinfo.txt");
+        let names =
+            "fileName\tlatitude\tlongitude\taltitude_amsl\taltitude_wgs84\theading\tpitch\troll\n";
+        let text = format!(
+            "#Rev: sensefly/geoinfo/2\n{names}IMG_2166.JPG\t37.5\t139.0\t216.5\t255.8\t149.4\t5.2\t3.9\t\nIMG_2167.JPG\t37.6\t139.0\t216.5\t255.8\t149.4\t5.2\t3.9\t\n"
+        );
+        fs::write(&path, text).unwrap();
+        let fault = read_cloud(&path, &Progress::default()).unwrap_err().fault;
+        assert_eq!(
+            fault.what,
+            "it holds the positions of 2 photos, not a surface"
+        );
+        assert!(fault.remedy.contains("--positions"), "{fault}");
     }
 
     #[test]

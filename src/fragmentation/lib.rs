@@ -48,7 +48,7 @@ pub use comparison::{
 pub use distribution::{PERCENTILES, SizeDistribution};
 pub use distribution_set::{DistributionSet, LabelledDistribution, Labels};
 pub use effort::{Effort, TimeSum};
-pub use fit::{Fit, FitOptions, FittedParameter, Percentile, TOPSIZE_PERCENT, fit};
+pub use fit::{Fit, FitOptions, FittedParameter, NotDetermined, Percentile, TOPSIZE_PERCENT, fit};
 pub use functions::{
     Curve, GatesGaudinSchuhmann, GatesGaudinSchuhmannError, Model, RosinRammler, RosinRammlerError,
     Swebrec, Swebrec5, Swebrec5Error, SwebrecError,

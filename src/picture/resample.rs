@@ -24,8 +24,9 @@ pub(super) fn cubic(image: &RgbImage, u: f64, v: f64) -> [u8; 3] {
             *sum += down * mixed;
         }
     }
-    // `as` saturates: the cubic may overshoot.
-    sum.map(|value| value.round() as u8)
+    // `as` truncates and saturates: the cubic may overshoot. In f64 half of one is added without rounding, and `round` would be
+    // a call for each.
+    sum.map(|value| (f64::from(value) + 0.5) as u8)
 }
 
 /// The four pixels around a place along one side of `length` pixels, and their weights.

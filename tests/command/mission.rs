@@ -84,9 +84,43 @@ fn a_mission_is_told_and_written_for_another() {
         assert!(far.contains(said), "{place}: {far}");
     }
     crate::common::stdout_of(&[&at[..], &["50.0170,7.0001"]].concat());
+    // What is no latitude and longitude at all, though x and y of a map may be.
+    let degrees = "write the latitude and the longitude in degrees, with a comma between them";
+    for (place, said) in [
+        ("34.98;-106.6", degrees),
+        ("50", degrees),
+        ("50,7;51,8", degrees),
+        ("91,0", "a latitude lies between -90 and 90 degrees"),
+        (
+            "452250,5411820",
+            "a latitude lies between -90 and 90 degrees",
+        ),
+        ("50,187", "a longitude lies between -180 and 180 degrees"),
+    ] {
+        let refused = crate::common::fragscale(&[&at[..], &[place]].concat());
+        let error = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(
+            !refused.status.success() && error.contains(said),
+            "{place}: {error}"
+        );
+    }
+    // Its elevation is nothing that --take-off says: the file's 0 is no height.
+    let to = ["--to", &path("bench.plan")];
+    let moved = crate::common::fragscale(&[&at[..], &["50.0001,7"], &to].concat());
+    let said = String::from_utf8_lossy(&moved.stderr).into_owned();
+    assert!(
+        said.contains("how high the place of take-off lies is not known"),
+        "{said}"
+    );
+    let known = ["--elevation", "160", "--datum", "geoid", "--force"];
+    let moved = crate::common::fragscale(&[&at[..], &["50.0001,7"], &to, &known].concat());
+    let said = String::from_utf8_lossy(&moved.stderr).into_owned();
+    assert!(
+        moved.status.success() && !said.contains("lies is not known"),
+        "{said}"
+    );
     let shown = crate::common::stdout_of(&["info", &path("bench.waypoints")]);
-    let take_off =
-        "take off: elevation (above the geoid EGM96, metres 160.0), latitude 50.0, longitude 7.0";
+    let take_off = "take off: 50.0000000, 7.0000000, 160.00 m above the geoid EGM96\n";
     assert!(shown.contains(take_off), "{shown}");
     // What was read is not written over.
     let own = crate::common::fragscale(&[

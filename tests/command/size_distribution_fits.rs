@@ -309,3 +309,32 @@ fn sizes_beyond_what_was_measured_are_named() {
     let of_rosin_rammler = said_with(open, &["--model", "rosin-rammler"]).expect("a line");
     assert!(!of_rosin_rammler.contains("xmax"), "{of_rosin_rammler}");
 }
+
+/// Points that rise more slowly at their end than Swebrec without a largest size does.
+#[test]
+fn a_largest_size_that_the_data_do_not_say_is_no_number_in_table_and_csv() {
+    let folder = table("size_mm,percent_passing\n1,9\n2.5,20\n10,50\n40,78\n90,87\n");
+    let path = folder.path().join("t.csv");
+    let path = path.to_str().expect("a UTF-8 path");
+    let why = "the data do not say a largest size";
+    let output = crate::common::fragscale(&["psd", "fit", path, "--format", "csv"]);
+    let csv = String::from_utf8_lossy(&output.stdout).into_owned();
+    for row in [",swebrec,xmax,mm,,,,\n", ",swebrec,b,,,,,\n"] {
+        assert!(csv.contains(row), "{csv}");
+    }
+    assert!(csv.contains(",swebrec,x50,mm,10.5"), "{csv}");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(said.matches(why).count(), 1, "{said}");
+    let output = crate::common::fragscale(&["psd", "fit", path]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let rows = text.lines().filter(|line| line.contains("not determined"));
+    let names: Vec<&str> = rows.filter_map(|row| row.split(' ').next()).collect();
+    assert_eq!(names, ["xmax", "b"], "{text}");
+    assert!(text.contains(&format!("note: {why}")), "{text}");
+    assert!(!text.contains("topsize (P99.95), xmax (above"), "{text}");
+    // It is in the notes there.
+    assert!(!String::from_utf8_lossy(&output.stderr).contains(why));
+    let json: Value =
+        serde_json::from_str(&stdout_of(&["psd", "fit", path, "--format", "json"])).expect("JSON");
+    assert!(json["parameters"]["xmax"].as_f64().expect("a number") > 1e90);
+}

@@ -97,6 +97,66 @@ fn a_typed_note_goes_with_the_box() {
     assert_eq!(verdict(&desk, photo), Verdict::Accepted);
 }
 
+/// Undone and done again, a decision comes back without the note that was typed meanwhile: leaving asks, and saving
+/// takes it.
+#[test]
+fn a_note_that_was_typed_between_undo_and_redo_is_saved() {
+    let (mut desk, photo, name) = doubting();
+    desk.click(Role::Button, "Leave this photo out");
+    let folder = tempfile::tempdir().expect("a folder");
+    let saved = folder.path().join("flight.toml");
+    let save = |desk: &mut Desk| {
+        let save = Command::SaveAs(saved.clone().into());
+        desk.harness.state_mut().apply(save);
+        desk.settle();
+        fs::read_to_string(&saved).expect("saved")
+    };
+    save(&mut desk);
+    desk.press(Modifiers::COMMAND, Key::Z);
+    desk.fill("Note on the photo", "in the shade");
+    desk.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!(verdict(&desk, photo), Verdict::LeftOut);
+    assert!(!desk.open().is_changed());
+    desk.harness.state_mut().apply(Command::Close);
+    desk.settle();
+    assert!(desk.says("what was decided of its photos"));
+    desk.click(Role::Button, "Stay here");
+    // The same on the way to a file.
+    for _ in 0..2 {
+        desk.press(Modifiers::COMMAND, Key::Z);
+    }
+    desk.fill("Note on the photo", "in the sun");
+    desk.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    let text = save(&mut desk);
+    assert!(text.contains("note = \"in the sun\""), "{text}");
+    assert!(!desk.open().is_changed() && !desk.logged("is kept with a decision only"));
+
+    // Without a decision it is in no file, which is said.
+    desk.click(Role::Button, "Take the decision back");
+    desk.fill("Note on the photo", "perhaps");
+    let text = save(&mut desk);
+    assert!(!text.contains("perhaps"), "{text}");
+    let said =
+        format!("a note on {name} is kept with a decision only: accept the photo or leave it out");
+    assert!(desk.logged(&said) && desk.says(&said));
+}
+
+/// What was undone is no news any more once something else is decided.
+#[test]
+fn a_new_step_puts_the_word_of_the_undone_one_away() {
+    let (mut desk, _, _) = doubting();
+    let said = "undone: what was decided of photos";
+    desk.click(Role::Button, "Leave this photo out");
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert!(desk.says(said), "{:?}", desk.texts());
+    desk.click(Role::Button, "Accept this photo");
+    assert!(!desk.says(said) && desk.logged(said));
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert!(desk.says(said));
+    desk.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert!(desk.says("done again: what was decided of photos"));
+}
+
 #[test]
 fn a_trusted_photo_is_left_out_by_its_box_and_by_its_button() {
     let mut desk = Desk::new(Some(&flight("assets/sample")));

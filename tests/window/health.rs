@@ -1,10 +1,14 @@
 //! The flight's health: what it says of flights that are known to be ill, and that each remedy is one click
 //! away.
 
+use std::time::{Duration, Instant};
+
 use egui::Key;
 use egui::Modifiers;
 use egui::accesskit::Role;
-use fragscale::app::command::Asking;
+use egui_kittest::kittest::{NodeT, Queryable};
+use fragscale::app::command::{Asking, Command};
+use fragscale::app::tasks::work::Task;
 use fragscale::formats::read_cloud;
 use fragscale::jobs::Progress;
 use fragscale::opening::{Health, HealthFinding, HealthItem, Remedy};
@@ -83,6 +87,40 @@ fn the_sample_is_well_but_for_its_hole() {
     assert!(desk.shows(Role::Status, &label));
     desk.press(Modifiers::NONE, Key::F4);
     assert!(!desk.shows(Role::Status, &label), "it is put away");
+}
+
+/// Until the colours of all photos are compared, nothing is said of them that reads as final.
+#[test]
+fn colours_that_are_being_compared_are_pending() {
+    let mut desk = Desk::new(None);
+    let open = Command::Open(flight("assets/sample"));
+    desk.harness.state_mut().apply(open);
+    let start = Instant::now();
+    let mut was_pending = false;
+    loop {
+        desk.harness.step();
+        let state = desk.harness.state().state();
+        if state.open.is_some() && state.is_idle() {
+            break;
+        }
+        assert!(
+            start.elapsed() < Duration::from_secs(120),
+            "a job does not end"
+        );
+        let all = desk.harness.query_all_by_role(Role::Status);
+        let mut all = all.filter_map(|node| node.accesskit_node().label());
+        let said = all.find(|said| said.starts_with("Colours: "));
+        if let Some(said) = said.filter(|_| state.work.is_running(Task::THUMBNAILS)) {
+            was_pending |= said.contains("are still being compared");
+            assert!(!said.contains("so far"), "{said}");
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    assert!(was_pending);
+    desk.settle();
+    assert_eq!(finding(&desk, HealthItem::Colours).short, "same");
+    let label = format!("Colours: {}", finding(&desk, HealthItem::Colours).says);
+    assert!(desk.shows(Role::Status, &label));
 }
 
 #[test]

@@ -38,7 +38,10 @@ impl OpenFlight {
                 self.pick(Purpose::Hover, ray);
             }
             Command::Hover(_, None) => {
+                // What appears under a resting mouse takes it away for a frame: asked again, the two would take turns for ever.
+                let asked = self.pointer.asked;
                 self.point_at_nothing();
+                self.pointer.asked = asked;
                 self.ask_surveyor();
             }
             Command::DoubleClick(_) if self.pointer.drawn.is_some() => {

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use crate::flight::{DecisionKind, Doubt, InView, PhotoReview, Sight, Verdict};
+use crate::fault::one_line;
+use crate::flight::{Decision, Doubt, InView, PhotoReview, Sight, Verdict};
 use crate::open_flight::OpenFlight;
 use crate::render::PhotoZoom;
 
@@ -72,12 +73,29 @@ impl OpenFlight {
 
     /// The photo's decision with the note that was typed since; `None` where nothing was, or no decision holds that
     /// could have it.
-    pub(crate) fn noted_anew(&self, photo: usize) -> Option<(DecisionKind, String)> {
-        let note = self.reviewing.notes.get(&photo)?;
+    pub(crate) fn noted_anew(&self, photo: usize) -> Option<Decision> {
+        let note = one_line(self.reviewing.notes.get(&photo)?);
+        let decision = self.decision_that_holds(photo)?;
+        (decision.note != note).then(|| Decision {
+            note,
+            ..decision.clone()
+        })
+    }
+
+    /// The photos whose typed notes no file has, as no decision holds that could have them.
+    pub(crate) fn waiting_notes(&self) -> impl Iterator<Item = usize> {
+        let notes = self.reviewing.notes.iter();
+        let waiting = notes.filter(move |(photo, note)| {
+            !note.trim().is_empty() && self.decision_that_holds(**photo).is_none()
+        });
+        waiting.map(|(photo, _)| *photo)
+    }
+
+    /// What was decided of a photo, where no reasons have come since.
+    fn decision_that_holds(&self, photo: usize) -> Option<&Decision> {
         let reviewed = self.review.photo(photo)?;
-        let decision = reviewed.decision?;
         let holds = reviewed.reasons_since_accepted().is_empty();
-        (holds && decision.note != *note).then(|| (decision.kind, note.clone()))
+        reviewed.decision.filter(|_| holds)
     }
 
     /// How far the review is.

@@ -80,7 +80,7 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
             if button.on_hover_text(actions::view::LOG.hover).clicked() {
                 commands.push(Command::ToggleLog);
             }
-            if let Some(line) = state.log.last() {
+            if let Some(line) = state.last_said() {
                 names::name(ui, &line.text);
             }
         });

@@ -1,5 +1,6 @@
 //! What is done every day, one click each.
 
+use super::rows::text_width;
 use super::verdict::{verdict_color, verdict_sign};
 use crate::actions;
 use crate::command::Command;
@@ -8,6 +9,7 @@ use crate::names;
 use crate::open_flight::OpenFlight;
 use crate::size_distributions::Page;
 use crate::state::State;
+use crate::tasks::photos::STILL_COMPARING;
 use crate::units::LengthUnit;
 
 /// The units that scales are wanted in.
@@ -22,8 +24,12 @@ const UNITS: [LengthUnit; 5] = [
 /// A bar that is narrower, points, says less; so much more is needed for each verdict that not every flight has.
 const NARROW: f32 = 1280.0;
 const VERDICT: f32 = 90.0;
-/// In one that is narrower yet a verdict that no photo has does not stand.
+/// In one that is narrower yet a verdict that no photo has does not stand in words.
 const NARROWEST: f32 = 1160.0;
+/// What a separator takes of a row beside the gap behind it, points: egui's own.
+const SEPARATOR: f32 = 6.0;
+/// Widths are rounded to whole pixels; so much is left for that.
+const ROUNDING: f32 = 1.0;
 
 /// Draws the tool bar.
 pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -81,11 +87,9 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         let Some(open) = &state.open else {
             return;
         };
-        for (verdict, count, shown) in verdicts {
-            if width < NARROWEST && count == 0 && !shown {
-                continue;
-            }
-            let text = format!("{} {count} {verdict}", verdict_sign(verdict));
+        let chosen = open.chosen_count();
+        let export = format!("Export {chosen}");
+        for (text, verdict, shown) in counts(&verdicts, width >= NARROWEST, &export, ui) {
             let text = egui::RichText::new(text).color(verdict_color(verdict, ui.visuals()));
             let button = ui.selectable_label(shown, text);
             let button = button.on_hover_text(format!(
@@ -100,13 +104,18 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             }
         }
         ui.separator();
-        let chosen = open.chosen_count();
-        let export = egui::Button::new(egui::RichText::new(format!("Export {chosen}")).strong());
+        let export = egui::Button::new(egui::RichText::new(export).strong());
         let export = ui.add_enabled(chosen > 0, export);
         export.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Button, chosen > 0, "Export chosen photos")
         });
-        let export = export.on_hover_text(actions::file::EXPORT.hover);
+        let export = match state.compares_colours() {
+            true => export.on_hover_text(format!(
+                "{}\n{STILL_COMPARING}: a photo may still be doubted",
+                actions::file::EXPORT.hover
+            )),
+            false => export.on_hover_text(actions::file::EXPORT.hover),
+        };
         if export.on_disabled_hover_text(why_no_export(open)).clicked() {
             commands.extend((actions::file::EXPORT.command)(state));
         }
@@ -129,6 +138,50 @@ fn verdicts(state: &State) -> Vec<(Verdict, usize, bool)> {
         counted.filter(is_there).collect()
     };
     state.open.as_deref().map(of).unwrap_or_default()
+}
+
+/// The texts of the counts, with their verdicts and whether the table shows these alone: so much that the button for the
+/// export stays in this row, and a further count moves nothing that lies under the bar. What has no room for whole words says
+/// less: first a verdict that no photo has does not stand, then sign and number stand alone.
+fn counts(
+    verdicts: &[(Verdict, usize, bool)],
+    is_wide: bool,
+    export: &str,
+    ui: &egui::Ui,
+) -> Vec<(String, Verdict, bool)> {
+    let texts = |in_words: bool, with_none: bool| {
+        let stands = verdicts
+            .iter()
+            .filter(move |(_, count, shown)| with_none || *count > 0 || *shown);
+        let texts = stands.map(move |&(verdict, count, shown)| {
+            let sign = verdict_sign(verdict);
+            let text = match in_words {
+                true => format!("{sign} {count} {verdict}"),
+                false => format!("{sign} {count}"),
+            };
+            (text, verdict, shown)
+        });
+        texts.collect::<Vec<_>>()
+    };
+    let spacing = ui.spacing();
+    let gap = spacing.item_spacing.x;
+    let beside_text = 2.0 * spacing.button_padding.x + ROUNDING;
+    let button = |text: &str| text_width(ui, text) + beside_text;
+    let room = ui.available_size_before_wrap().x - SEPARATOR - gap - button(export);
+    let fits = |texts: &[(String, Verdict, bool)]| {
+        let widths = texts.iter().map(|(text, ..)| button(text) + gap);
+        widths.sum::<f32>() <= room
+    };
+    let shorter = [
+        (true, is_wide),
+        (true, false),
+        (false, true),
+        (false, false),
+    ];
+    let mut shorter = shorter.map(|(in_words, with_none)| texts(in_words, with_none));
+    let fitting = shorter.iter().position(|texts| fits(texts));
+    // A second row, which is needed then, has room for the words.
+    std::mem::take(&mut shorter[fitting.unwrap_or(1)])
 }
 
 /// Why nothing can be exported now.

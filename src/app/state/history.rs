@@ -9,6 +9,8 @@ pub struct History<T> {
     undone_to: Vec<T>,
     now: T,
     redo: Vec<T>,
+    /// How many new steps were made.
+    steps: u64,
 }
 
 impl<T: PartialEq> History<T> {
@@ -18,6 +20,7 @@ impl<T: PartialEq> History<T> {
             undone_to: Vec::new(),
             now,
             redo: Vec::new(),
+            steps: 0,
         }
     }
 
@@ -36,6 +39,12 @@ impl<T: PartialEq> History<T> {
         }
         self.undone_to.push(std::mem::replace(&mut self.now, next));
         self.redo.clear();
+        self.steps += 1;
+    }
+
+    /// How many new steps were made: undo and redo make none.
+    pub fn steps_made(&self) -> u64 {
+        self.steps
     }
 
     /// Changes the state of now without a step: for what no person did. Where it becomes the state
@@ -103,6 +112,7 @@ mod tests {
         assert_eq!(*history.now(), 1);
         assert!(history.redo() && history.redo() && !history.redo());
         assert_eq!(*history.now(), 3);
+        assert_eq!(history.steps_made(), 2);
     }
 
     #[test]

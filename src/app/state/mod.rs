@@ -136,6 +136,8 @@ pub struct State {
     pub log: Vec<LogLine>,
     /// How many of its lines are of what was on the screen before this flight.
     log_before: usize,
+    /// What was said of the last undo or redo, and how many steps had been made until then.
+    undo_said: Option<(String, u64)>,
     /// The last error, shown over the viewport until it is put away.
     pub notice: Option<LogLine>,
     /// The tab of the right panel.
@@ -188,6 +190,7 @@ impl State {
             network: Network::default(),
             log: Vec::new(),
             log_before: 0,
+            undo_said: None,
             notice: None,
             tab: Tab::default(),
             asking: None,
@@ -226,6 +229,30 @@ impl State {
             self.log_before = self.log_before.saturating_sub(1);
         }
         self.log.push(line);
+    }
+
+    /// Says what was undone or done again.
+    pub(crate) fn say_undone(&mut self, text: &str) {
+        self.say(Severity::Note, text);
+        let said = self.log.last().map(|line| line.text.clone());
+        self.undo_said = said.map(|text| (text, self.steps_made()));
+    }
+
+    /// The line at the foot of the window: the last one of the log. What was undone is old once a new step is made.
+    pub fn last_said(&self) -> Option<&LogLine> {
+        let last = self.log.last()?;
+        let undone = self.undo_said.as_ref();
+        let is_old =
+            undone.is_some_and(|(text, steps)| *text == last.text && *steps != self.steps_made());
+        (!is_old).then_some(last)
+    }
+
+    /// How many steps were made that undo goes back over.
+    fn steps_made(&self) -> u64 {
+        self.open.as_deref().map_or(0, |open| {
+            let picked = &open.pointer.picked.history;
+            open.history.steps_made() + open.clip_history.steps_made() + picked.steps_made()
+        })
     }
 
     /// Another flight comes onto the screen: what was said until now is not of it.

@@ -12,7 +12,7 @@ use crate::flight::{ColoursFound, Doubt, TogetherFound};
 use crate::formats::photos::photo_metadata;
 use crate::formats::{self, FileError};
 use crate::jobs::Progress;
-use crate::open_flight::{Preview, PreviewPicture};
+use crate::open_flight::{OpenFlight, Preview, PreviewPicture};
 use crate::opening::{Colours, PhotosTogether, Together};
 use crate::picture;
 use crate::render::{LargePhoto, PhotoImage};
@@ -38,6 +38,10 @@ impl Task {
     pub const PREVIEW: Self = Self::new("Photo").of_flight();
 }
 
+/// What is said while [`State::compares_colours`].
+pub(crate) const STILL_COMPARING: &str =
+    "The photos' colours are still being compared with the surface's";
+
 /// A reduced, undistorted photo on its way to the table and the viewport.
 struct Thumbnail {
     /// Of which opened flight, counted.
@@ -55,6 +59,15 @@ struct Thumbnail {
 }
 
 impl State {
+    /// Whether the photos' colours are still being compared with the surface's: each is as it is read.
+    pub(crate) fn compares_colours(&self) -> bool {
+        let has_colours = |open: &OpenFlight| {
+            let surface = &open.flight().parts().surface;
+            !surface.colors().is_empty()
+        };
+        self.work.is_running(Task::THUMBNAILS) && self.open.as_deref().is_some_and(has_colours)
+    }
+
     /// Reads all photos, small.
     pub fn start_thumbnails(&mut self) {
         let Some(open) = &self.open else {

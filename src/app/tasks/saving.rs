@@ -55,6 +55,7 @@ impl State {
         if self.open.is_none() || self.is_busy(Task::SAVE) {
             return;
         }
+        self.take_notes();
         let own = self.open.as_ref().filter(|open| !open.files.stays());
         let own = own.and_then(|open| open.files.origin.flight_file());
         if own.is_some_and(|own| files::is_same_file(own, &to.path)) {
@@ -186,6 +187,7 @@ impl State {
             open.files.origin = origin;
             open.files.saved = settings;
             open.note_saved();
+            self.warn_of_waiting_notes();
         }
         let changed = self.open.as_ref().is_some_and(|open| open.is_changed());
         match self.after_saving.take() {

@@ -114,7 +114,7 @@ impl ChosenPhotos {
         if self.all {
             return Ok((0..flight.parts().photos.len()).collect());
         }
-        let named = self.photo.iter().map(|name| flight.photo_named(name));
+        let named = self.photo.iter().map(|name| flight.photo_typed(name));
         let mut named = named.collect::<Result<Vec<_>, _>>()?;
         // In the flight's order, each once.
         named.sort_unstable();

@@ -106,6 +106,9 @@ pub(super) fn fit(arguments: &FitArguments, progress: &Progress) -> Result<Answe
     progress.stage("drawing");
     let figures = drawn_figures(&figure, formats)?;
     let report = FitReport::new(set.unit, fitted, arguments.level, &fitting.percentiles);
+    if fitting.answer.is_csv() {
+        warnings.extend(exports::fit_csv_warnings(&report));
+    }
     let text = fitting.answer.text(
         &report,
         exports::fit_table,

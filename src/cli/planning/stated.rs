@@ -22,7 +22,7 @@ pub(super) struct StatedArguments {
     #[arg(long, value_name = "METRES", value_parser = number, allow_hyphen_values = true)]
     safe_height: Option<f64>,
     /// Where the drone takes off, in degrees of WGS 84, likewise.
-    #[arg(long, value_name = "LATITUDE,LONGITUDE", value_parser = place, allow_hyphen_values = true)]
+    #[arg(long, value_name = "LATITUDE,LONGITUDE", value_parser = take_off, allow_hyphen_values = true)]
     take_off: Option<DVec2>,
     /// The elevation of the take-off in metres, likewise: of files whose heights are absolute, for drones that count
     /// from there.
@@ -55,6 +55,19 @@ fn number(text: &str) -> Result<f64, String> {
     let number: Option<f64> = text.trim().parse().ok();
     let number = number.filter(|number| number.is_finite());
     number.ok_or_else(|| "give a number of metres".to_owned())
+}
+
+/// Latitude and longitude. What is no place of the Earth is metres of a map, or the longitude first.
+fn take_off(text: &str) -> Result<DVec2, String> {
+    let place = place(text).map_err(|_| {
+        "write the latitude and the longitude in degrees, with a comma between them".to_owned()
+    })?;
+    for (name, degrees, most) in [("latitude", place.x, 90.0), ("longitude", place.y, 180.0)] {
+        if degrees.abs() > most {
+            return Err(format!("a {name} lies between -{most} and {most} degrees"));
+        }
+    }
+    Ok(place)
 }
 
 impl StatedArguments {

@@ -83,6 +83,10 @@ pub(super) fn home(mission: &Mission, notes: &mut Vec<String>) -> Result<TakeOff
         metres,
         above: Above::Geoid,
     });
+    if elevation.is_none() {
+        let note = "how high the place of take-off lies is not known: it stands as 0 m in the file, which is shown and not flown";
+        notes.push(note.to_owned());
+    }
     Ok(TakeOff {
         elevation,
         ..take_off

@@ -73,6 +73,22 @@ impl FitReport {
     }
 }
 
+/// What people read in the place of a parameter's value that means nothing.
+pub(super) const NOT_DETERMINED: &str = "not determined";
+
+/// Why parameters of curves have no value in the report's CSV, a sentence each.
+pub fn fit_csv_warnings(report: &FitReport) -> Vec<String> {
+    let of_curve = |FittedCurve { label, fit, .. }: &FittedCurve| -> Vec<String> {
+        let all = fit.not_determined.iter();
+        all.map(|of| match label.is_empty() {
+            true => of.why.clone(),
+            false => format!("{label}: {}", of.why),
+        })
+        .collect()
+    };
+    report.curves.iter().flat_map(of_curve).collect()
+}
+
 /// The report as aligned text: parameters, how well they fit, percentiles, points, notes.
 pub fn fit_table(report: &FitReport) -> String {
     let curves = report.curves.iter();
@@ -128,13 +144,18 @@ fn table(report: &FitReport, curve: &FittedCurve) -> String {
     ];
     for parameter in &fit.parameters {
         let given = parameter.name == "xmax" && curve.xmax_given;
+        let is_known = fit.determines(parameter.name);
         parameters.push(row(&[
             parameter.name.to_owned(),
-            significant(parameter.value, 6),
+            match is_known {
+                true => significant(parameter.value, 6),
+                false => NOT_DETERMINED.to_owned(),
+            },
             if given {
                 "given".to_owned()
             } else {
-                or_dash(parameter.standard_error, |error| significant(error, 3))
+                let error = parameter.standard_error.filter(|_| is_known);
+                or_dash(error, |error| significant(error, 3))
             },
         ]));
     }
@@ -179,6 +200,7 @@ fn table(report: &FitReport, curve: &FittedCurve) -> String {
     // One that was given is nobody's guess.
     let xmax = (fit.parameters.iter())
         .find(|parameter| parameter.name == "xmax" && !curve.xmax_given)
+        .filter(|parameter| fit.determines(parameter.name))
         .map(|parameter| (parameter.name.to_owned(), parameter.value));
     by_function.extend(xmax);
     text += &aligned(&sizes);
@@ -240,8 +262,12 @@ pub fn fit_csv(report: &FitReport) -> Result<String, csv::Error> {
             } else {
                 ""
             };
-            let rest = [parameter.standard_error, None, None];
-            line(parameter.name, unit, parameter.value, rest)?;
+            // A number here would be taken for one. Why there is none the notes say, which have no place in CSV.
+            let (value, error) = match fit.determines(parameter.name) {
+                true => (parameter.value, parameter.standard_error),
+                false => (f64::NAN, None),
+            };
+            line(parameter.name, unit, value, [error, None, None])?;
         }
         let none = [None; 3];
         line(

@@ -18,7 +18,7 @@ pub use figure::{
     Band, Dash, FigureContents, FigureFormat, FigureStyle, FittedDistribution, Marker, Panel,
     Series, SizeAxis, SizeTick, figure_of_comparison, figure_of_fits, figure_png, figure_svg,
 };
-pub use fit::{FitReport, FittedCurve, fit_csv, fit_json, fit_table};
+pub use fit::{FitReport, FittedCurve, fit_csv, fit_csv_warnings, fit_json, fit_table};
 pub use points::points_of_curves_csv;
 pub use report::{ComparisonReport, comparison_report};
 

@@ -38,9 +38,9 @@ mod tests;
 use std::path::Path;
 
 use crate::fault::Fault;
+use crate::files::same_name::is_same;
 use crate::files::{FileError, is_own_result, last_segment, read_small, text_from_bytes};
 use crate::labels::{FINES, LabelImage, NOT_ROCK};
-use crate::photos::same_name::is_same;
 use crate::text::notes::Notes;
 use outline::OutlinedImage;
 

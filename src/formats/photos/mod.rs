@@ -5,4 +5,3 @@ pub mod photo_folder;
 pub mod photo_metadata;
 pub mod photo_size;
 pub mod photos_below;
-pub mod same_name;

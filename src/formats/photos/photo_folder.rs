@@ -7,9 +7,8 @@ use std::path::{Path, PathBuf};
 use super::image_names::{is_image, readable};
 use super::photo_size;
 use super::photos_below::{PhotosBelow, folders_of_photos};
-use super::same_name;
 use crate::fault::{Fault, first_names};
-use crate::files::{last_segment, open_file, unreadable_folder};
+use crate::files::{last_segment, open_file, same_name, unreadable_folder};
 use crate::packages::reconstruction::Reconstruction;
 
 /// How many files an error about a folder names.

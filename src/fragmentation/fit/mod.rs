@@ -68,6 +68,15 @@ pub struct FittedParameter {
     pub standard_error: Option<f64>,
 }
 
+/// Parameters whose values mean nothing, though the function with them fits.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NotDetermined {
+    /// Their names.
+    pub parameters: Vec<&'static str>,
+    /// Why, in a sentence, which is one of the fit's notes, too.
+    pub why: String,
+}
+
 /// A function fitted to a distribution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
@@ -91,6 +100,8 @@ pub struct Fit {
     pub degrees_of_freedom: usize,
     /// What to know before trusting it, one sentence each: a parameter at its bound, two optima.
     pub notes: Vec<String>,
+    /// Which of its parameters' values are not to be shown to people.
+    pub not_determined: Vec<NotDetermined>,
     known: Known,
 }
 
@@ -117,6 +128,12 @@ pub struct Percentile {
 }
 
 impl Fit {
+    /// Whether the value of the parameter of this name means anything.
+    pub fn determines(&self, parameter: &str) -> bool {
+        let mut unknown = self.not_determined.iter().flat_map(|of| &of.parameters);
+        unknown.all(|name| *name != parameter)
+    }
+
     /// The size that `percent` passes, with its band at a confidence of `level` (0.95). The band is by
     /// the delta method on the size's logarithm, with Student's t; there is none at 0 and 100 %.
     pub fn percentile(&self, percent: f64, level: f64) -> Percentile {
@@ -297,7 +314,7 @@ pub fn fit(
     let mean = weighted(&|_, point| point[1]) / total;
     let about_mean = weighted(&|_, point| (point[1] - mean) * (point[1] - mean));
     let others: Vec<_> = curves.iter().skip(1).map(|(o, c)| (o.sum, *c)).collect();
-    let notes = notes::notes(&notes::Told {
+    let told = notes::Told {
         family: &family,
         best,
         points: &points,
@@ -306,7 +323,8 @@ pub fn fit(
         others: &others,
         degrees_of_freedom,
         known: uncertainty.is_some(),
-    });
+    };
+    let (notes, not_determined) = (notes::notes(&told), notes::not_determined(&told));
     Ok(Fit {
         model,
         curve,
@@ -317,6 +335,7 @@ pub fn fit(
         r_squared: 1.0 - sum / about_mean,
         degrees_of_freedom,
         notes,
+        not_determined,
         known: uncertainty.map_or(Known::Nothing, |of| Known::Scatter(Box::new(of))),
     })
 }

@@ -3,7 +3,7 @@
 use super::coordinates::{Coordinates, Optimum};
 use super::family::Family;
 use super::points::Points;
-use super::{FitOptions, FittedParameter};
+use super::{FitOptions, FittedParameter, NotDetermined};
 use crate::distribution::as_typed;
 use crate::{Curve, PERCENTILES};
 
@@ -57,6 +57,7 @@ pub(super) fn notes(told: &Told) -> Vec<String> {
                 .to_owned(),
         );
     }
+    notes.extend(not_determined(told).into_iter().map(|of| of.why));
     let coordinates = &told.best.at;
     match told.family {
         Family::Swebrec(_) => swebrec(told, coordinates, &mut notes),
@@ -96,16 +97,47 @@ fn one_decimal(percent: f64) -> f64 {
     (percent * 10.0).round() / 10.0
 }
 
+/// Which parameters' values mean nothing, and why.
+pub(super) fn not_determined(told: &Told) -> Vec<NotDetermined> {
+    let at = &told.best.at;
+    let [low, high] = told.family.bounds()[0];
+    let is_fitted = told.options.xmax.is_none();
+    let of = |parameters: &[&'static str], why: &str| NotDetermined {
+        parameters: parameters.to_vec(),
+        why: why.to_owned(),
+    };
+    let mut found = Vec::new();
+    match told.family {
+        Family::Swebrec(_) if is_fitted && near(at[0], low, high) => found.push(of(
+            &["xmax", "b"],
+            "the data do not say a largest size: xmax ran to its bound, its value means nothing, nor \
+             does that of b, which grows with it; give the largest size if it is known",
+        )),
+        Family::GatesGaudinSchuhmann(_) if is_fitted && near(at[0], high, low) => found.push(of(
+            &["xmax"],
+            "the data do not say a largest size: xmax ran to its bound, its value means nothing",
+        )),
+        _ => {}
+    }
+    if !has_meaning(told.family, at, 2) {
+        found.push(of(
+            &["b"],
+            "a ended at 0: only the term of the fines is left, and b means nothing",
+        ));
+    } else if !has_meaning(told.family, at, 4) {
+        found.push(of(
+            &["c"],
+            "a ended at 1: it is the Swebrec function, and c means nothing",
+        ));
+    }
+    found
+}
+
 fn swebrec(told: &Told, at: &Coordinates, notes: &mut Vec<String>) {
     let bounds = told.family.bounds();
     let [low, high] = bounds[0];
-    if told.options.xmax.is_none() && near(at[0], low, high) {
-        notes.push(
-            "the data do not say a largest size: xmax ran to its bound, its value means nothing, nor \
-             does that of b, which grows with it; give the largest size if it is known"
-                .to_owned(),
-        );
-    } else if told.options.xmax.is_none() && near(at[0], high, low) {
+    let is_at_bound = near(at[0], low, high);
+    if told.options.xmax.is_none() && !is_at_bound && near(at[0], high, low) {
         notes.push(format!(
             "xmax ended at the largest size that not everything passed, {}: the data ask for a smaller \
              one, which cannot be",
@@ -115,13 +147,8 @@ fn swebrec(told: &Told, at: &Coordinates, notes: &mut Vec<String>) {
     if !told.family.is_extended() {
         return;
     }
-    if !has_meaning(told.family, at, 2) {
-        notes.push(
-            "a ended at 0: only the term of the fines is left, and b means nothing".to_owned(),
-        );
-    } else if !has_meaning(told.family, at, 4) {
-        notes.push("a ended at 1: it is the Swebrec function, and c means nothing".to_owned());
-    } else if at[3].abs() > 7.0 {
+    let are_both_there = has_meaning(told.family, at, 2) && has_meaning(told.family, at, 4);
+    if are_both_there && at[3].abs() > 7.0 {
         // A share of 0.001.
         notes.push(
             "a is next to 0 or 1: the smaller term bends the curve at the smallest sizes only, which \
@@ -133,15 +160,7 @@ fn swebrec(told: &Told, at: &Coordinates, notes: &mut Vec<String>) {
 
 fn gates_gaudin_schuhmann(told: &Told, at: &Coordinates, notes: &mut Vec<String>) {
     let [low, high] = told.family.bounds()[0];
-    if told.options.xmax.is_some() {
-        return;
-    }
-    if near(at[0], high, low) {
-        notes.push(
-            "the data do not say a largest size: xmax ran to its bound, its value means nothing"
-                .to_owned(),
-        );
-    } else if at[0] < 0.0 {
+    if told.options.xmax.is_none() && !near(at[0], high, low) && at[0] < 0.0 {
         notes.push(format!(
             "xmax lies below {}, which not everything passed: it is where the straight line reaches \
              100 %, not the largest fragment",

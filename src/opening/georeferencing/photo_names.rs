@@ -2,8 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::files::last_segment;
-use crate::formats::photos::same_name;
+use crate::files::{last_segment, same_name};
 use crate::formats::poses::position_list::number_of_photo;
 
 /// How the names of a list match those of photos: the first of these ways in which any of them do.

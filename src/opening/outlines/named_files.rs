@@ -5,8 +5,8 @@ use std::collections::VecDeque;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::files::same_name;
 use crate::files::{last_segment, unreadable_folder};
-use crate::formats::photos::same_name;
 use crate::formats::{FileError, MaskFile};
 
 /// More files are no folder of outlines.

@@ -10,6 +10,7 @@ use crate::opening::{Health, HealthFinding, HealthItem};
 use crate::panels::inspector::Offer;
 use crate::panels::verdict::{verdict_color, verdict_sign};
 use crate::state::State;
+use crate::tasks::photos::STILL_COMPARING;
 
 /// Draws the strip.
 pub fn health(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -43,6 +44,12 @@ fn item(
         says,
         remedy,
     } = finding;
+    // As pending as holes are, and not what is known in the end.
+    let is_unknown = *item == HealthItem::Colours && *health == Health::Unknown;
+    let (short, says) = match is_unknown && state.compares_colours() {
+        true => ("…", format!("{STILL_COMPARING}.")),
+        false => (short.as_str(), says.clone()),
+    };
     let visuals = ui.visuals();
     let (sign, color) = match health {
         Health::Good => (
@@ -61,7 +68,7 @@ fn item(
         let label = format!("{}: {says}", name(*item));
         egui::WidgetInfo::labeled(egui::Role::Status, true, label)
     });
-    label.on_hover_text(says);
+    label.on_hover_text(says.as_str());
     let mut is_new = |label: &'static str| {
         let is_new = !offered.contains(&label);
         offered.push(label);

@@ -6,6 +6,7 @@ use crate::fragmentation::{
     Comparison, MethodComparison, MethodCurve, PERCENT_ERROR, SCALE_WARNING,
 };
 use crate::size_distributions::comparison_notes;
+use crate::size_distributions::fit::NOT_DETERMINED;
 use crate::size_distributions::text_table::{aligned, or_dash, signed, significant, trimmed};
 
 /// The curves, then the percent errors, the norms and the percentiles of every method.
@@ -41,7 +42,10 @@ fn curve_text(text: &mut String, curve: &MethodCurve, comparison: &Comparison, r
     let parameters: Vec<String> = fit
         .parameters
         .iter()
-        .map(|parameter| format!("{} {}", parameter.name, significant(parameter.value, 5)))
+        .map(|parameter| match fit.determines(parameter.name) {
+            true => format!("{} {}", parameter.name, significant(parameter.value, 5)),
+            false => format!("{} {NOT_DETERMINED}", parameter.name),
+        })
         .collect();
     let trials = match curve.trials.len() {
         1 => "1 trial".to_owned(),

@@ -12,6 +12,7 @@ mod tests;
 
 use numbers::{measured, number};
 
+use super::fit::NOT_DETERMINED;
 use super::{comparison_notes, curves, figure_of_comparison, figure_svg, method_name};
 use crate::fault::Fault;
 use crate::fragmentation::{
@@ -195,7 +196,10 @@ fn fits(comparison: &Comparison) -> String {
                 found
                     .map_or(NONE.to_owned(), |parameter| {
                         let error = parameter.standard_error.map_or(NONE.to_owned(), number);
-                        format!("{} ({error})", number(parameter.value))
+                        match curve.fit.determines(name) {
+                            true => format!("{} ({error})", number(parameter.value)),
+                            false => NOT_DETERMINED.to_owned(),
+                        }
                     })
                     .into(),
             );

@@ -64,8 +64,10 @@ pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Co
         };
         let mut row = vec![labels.to_string()];
         for parameter in &fit.parameters {
-            row.push(number(parameter.value, 5));
-            row.push(number(parameter.standard_error, 2));
+            // The note below says why it has no value.
+            let is_known = fit.determines(parameter.name);
+            row.push(number(is_known.then_some(parameter.value), 5));
+            row.push(number(parameter.standard_error.filter(|_| is_known), 2));
         }
         row.push(fixed(fit.rmse, 2));
         row.push(fixed(fit.r_squared, 4));

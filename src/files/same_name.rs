@@ -19,7 +19,7 @@ pub fn is_same(one: &str, other: &str) -> bool {
 }
 
 /// The other ways to spell a path, for systems that take each for another file.
-pub(crate) fn other_spellings(path: &str) -> impl Iterator<Item = String> {
+pub fn other_spellings(path: &str) -> impl Iterator<Item = String> {
     let both: [String; 2] = [path.nfc().collect(), path.nfd().collect()];
     both.into_iter().filter(move |spelt| spelt != path)
 }
