@@ -424,7 +424,11 @@ fn mistakes_are_one_line_and_leave_no_file() {
         (&["--show", "mesh,clouds"], 2, "some of mesh, cloud"),
         (&["--show", "mesh:selected"], 2, "some of mesh, cloud"),
         (&["--view", "photo:IMG_9.jpg"], 1, "no photo 'IMG_9.jpg'"),
-        (&["--select", "IMG_9.jpg"], 1, "like 'IMG_0001.jpg'"),
+        (
+            &["--select", "IMG_9.jpg"],
+            1,
+            "the nearest name is 'IMG_0009.jpg'",
+        ),
         (&["--color-by", "scale"], 1, "--select PHOTO"),
     ] {
         let (code, said) = run(arguments);

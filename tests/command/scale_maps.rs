@@ -122,7 +122,7 @@ fn what_cannot_be_mapped_is_said_in_a_line() {
     let (map, to) = (at("map.tif"), at("out"));
     for command in [
         vec!["scale-map", &flight, "--photo", "IMG_002.jpg", "-o", &map],
-        vec!["rectify", &flight, "--photo", "img_0002.JPG", "--to", &to],
+        vec!["rectify", &flight, "--photo", "IMG_002.jpg", "--to", &to],
     ] {
         let error = error_of(&command);
         assert!(

@@ -10,7 +10,6 @@ pub mod loading;
 mod measure;
 pub mod picker;
 mod picking;
-mod read_again;
 pub mod reviewing;
 pub mod survey;
 pub mod table;

@@ -1,5 +1,7 @@
 //! Reading a flight and computing its scales: what a job does with what was named.
 
+mod read_again;
+
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
