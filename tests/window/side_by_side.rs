@@ -314,7 +314,7 @@ fn read_again_it_is_looked_at_as_before() {
         .iter()
         .map(|of| of.path.clone())
         .collect();
-    assert_eq!(layers, [layer.clone()]);
+    assert_eq!(layers, std::slice::from_ref(&layer));
     // It is read: nothing is written over it.
     assert!(desk.open().files.read.named(&layer).is_some());
     assert_eq!(desk.open().table.order.text, "IMG");

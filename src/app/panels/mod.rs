@@ -16,7 +16,6 @@ pub(crate) mod linked;
 mod log_panel;
 mod map;
 mod menu_bar;
-mod note;
 mod path_field;
 mod photo_view;
 mod photos_table;

@@ -3,7 +3,7 @@
 use crate::command::Command;
 use crate::flight::{DecisionKind, PhotoReview};
 use crate::open_flight::OpenFlight;
-use crate::panels::note::NoteField;
+use crate::panels::field::note::NoteField;
 
 /// Draws the decision, the note, and what can be decided.
 pub(super) fn decision(

@@ -4,18 +4,18 @@ use crate::command::{Command, ReviewStep};
 use crate::open_flight::OpenFlight;
 
 /// What of a note's field differs between its two places.
-pub(super) struct NoteField<'a> {
-    pub(super) id: egui::Id,
-    pub(super) label: &'a str,
-    pub(super) hint: &'a str,
+pub(in crate::panels) struct NoteField<'a> {
+    pub(in crate::panels) id: egui::Id,
+    pub(in crate::panels) label: &'a str,
+    pub(in crate::panels) hint: &'a str,
     /// What Enter does beside leaving the field.
-    pub(super) enter: Option<Command>,
+    pub(in crate::panels) enter: Option<Command>,
 }
 
 impl NoteField<'_> {
     /// Draws it; returns the note of now. What is typed is kept from the first letter on: keys and clicks can lead to
     /// another photo at any time.
-    pub(super) fn show(
+    pub(in crate::panels) fn show(
         self,
         open: &OpenFlight,
         photo: usize,

@@ -1,6 +1,8 @@
 //! A field for a number: what is typed counts when the field is left, so that undo has one step for
 //! it and nothing is computed for half a number.
 
+pub(super) mod note;
+
 use fragscale_formats::may_be_thousands;
 
 use super::accessible::described;
