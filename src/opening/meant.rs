@@ -44,7 +44,10 @@ mod tests {
         fs::write(folder.path().join("Screenshot 1.png"), "x").unwrap();
         let root = folder.path().to_owned();
         let meant = |paths: &[PathBuf]| meant_by(paths).unwrap();
-        assert_eq!(meant(std::slice::from_ref(&root)), [flight.clone()]);
+        assert_eq!(
+            meant(std::slice::from_ref(&root)),
+            std::slice::from_ref(&flight)
+        );
         let both = [flight.clone(), root.clone()];
         assert_eq!(meant(&both), both);
         let dropped = Dropped::sort(&both).unwrap();
