@@ -324,7 +324,8 @@ pub fn fit(
         degrees_of_freedom,
         known: uncertainty.is_some(),
     };
-    let (notes, not_determined) = (notes::notes(&told), notes::not_determined(&told));
+    let not_determined = notes::not_determined(&told);
+    let notes = notes::notes(&told, &not_determined);
     Ok(Fit {
         model,
         curve,

@@ -48,7 +48,7 @@ fn near(at: f64, bound: f64, other: f64) -> bool {
     (at - bound).abs() <= 1e-9 * (other - bound).abs()
 }
 
-pub(super) fn notes(told: &Told) -> Vec<String> {
+pub(super) fn notes(told: &Told, not_determined: &[NotDetermined]) -> Vec<String> {
     let mut notes = Vec::new();
     if told.degrees_of_freedom == 0 {
         notes.push(
@@ -57,7 +57,7 @@ pub(super) fn notes(told: &Told) -> Vec<String> {
                 .to_owned(),
         );
     }
-    notes.extend(not_determined(told).into_iter().map(|of| of.why));
+    notes.extend(not_determined.iter().map(|of| of.why.clone()));
     let coordinates = &told.best.at;
     match told.family {
         Family::Swebrec(_) => swebrec(told, coordinates, &mut notes),

@@ -39,7 +39,7 @@ pub(super) fn number_field(
 /// The number that was typed into the field of that label. Why it was not taken stays beside the field until
 /// something else is typed there.
 pub(super) fn settled(ui: &mut egui::Ui, label: &str, typed: Option<String>) -> Option<f64> {
-    let field = ui.scope_id().with(label);
+    let field = id_of(ui, label);
     let id = field.with("not taken");
     let read = typed.map(|typed| number_of(&typed));
     if let Some(Err(why)) = &read {
@@ -72,6 +72,17 @@ pub(super) fn number_of(typed: &str) -> Result<f64, String> {
     }
 }
 
+/// What stands in the field of that label, while it is typed and does not count yet.
+pub(super) fn being_typed(ui: &egui::Ui, label: &str) -> Option<String> {
+    let field = id_of(ui, label);
+    ui.data(|data| data.get_temp(field))
+}
+
+/// By what a field is known from frame to frame, and what is typed in it kept.
+fn id_of(ui: &egui::Ui, key: impl std::hash::Hash + std::fmt::Debug) -> egui::Id {
+    ui.scope_id().with(key)
+}
+
 /// Draws a field for a text; returns what was typed once the field is left.
 pub(super) fn text_field(
     ui: &mut egui::Ui,
@@ -95,12 +106,6 @@ pub(super) fn hinted_field(
     field_of(ui, label, label, hover, text, hint, width)
 }
 
-/// What stands in the field of that label, while it is typed and does not count yet.
-pub(super) fn being_typed(ui: &egui::Ui, label: &str) -> Option<String> {
-    let field = ui.scope_id().with(label);
-    ui.data(|data| data.get_temp(field))
-}
-
 /// The same that is told by `key` where its label changes with what is typed elsewhere: else a field that is entered would be another
 /// one in the next frame, and letters would be tools.
 pub(super) fn field_of(
@@ -112,7 +117,7 @@ pub(super) fn field_of(
     hint: &str,
     width: f32,
 ) -> Option<String> {
-    let id = ui.scope_id().with(key);
+    let id = id_of(ui, key);
     let mut typed: String = ui
         .data(|data| data.get_temp(id))
         .unwrap_or_else(|| text.to_owned());
