@@ -6,7 +6,7 @@ use glam::DVec2;
 use crate::cli::on_surface::places::place;
 use crate::cli::planning::flying::speed;
 use crate::fault::Fault;
-use crate::plan::{Above, Height, Mission, Stop, TakeOff};
+use crate::plan::{Above, Height, Mission, TakeOff};
 
 /// The farthest that the nearest stop may lie from a take-off that is typed, kilometres: nobody sees a drone there, which its pilot
 /// has to in most countries, and photos of one pile are taken within some hundred metres. Who typed it took one number for another.
@@ -154,29 +154,18 @@ fn take_off_at(place: DVec2) -> TakeOff {
     }
 }
 
-/// From a place, latitude and longitude, to the nearest stop, kilometres.
-fn to_nearest_stop(mission: &Mission, place: DVec2) -> Option<f64> {
-    let to_stop = |stop: &Stop| {
-        let of_one = Mission {
-            take_off: Some(take_off_at(place)),
-            stops: vec![stop.clone()],
-            ..Mission::default()
-        };
-        of_one.farthest_from_take_off()
-    };
-    let stops = mission.stops.iter().filter_map(to_stop);
-    stops.reduce(f64::min)
-}
-
 /// Why nobody takes off there, and what was meant, if that can be told.
 fn too_far(mission: &Mission, place: DVec2) -> Option<Fault> {
-    let kilometres = to_nearest_stop(mission, place)?;
+    let kilometres = mission.to_nearest_stop(place)?;
     if kilometres <= FARTHEST {
         return None;
     }
     let is_near = |place: DVec2| {
         let is_latitude = place.x.abs() <= 90.0;
-        is_latitude && to_nearest_stop(mission, place).is_some_and(|to| to <= FARTHEST)
+        is_latitude
+            && mission
+                .to_nearest_stop(place)
+                .is_some_and(|to| to <= FARTHEST)
     };
     let ways = [
         ("swapped", DVec2::new(place.y, place.x)),

@@ -1,6 +1,7 @@
 //! A photo as it is compared with those beside it: undistorted, small ([`crate::picture::for_comparing`]), gray.
 
-use glam::DVec2;
+use std::array::from_fn;
+
 use image::RgbImage;
 
 use crate::camera::Camera;
@@ -16,7 +17,12 @@ pub struct SmallPhoto {
     shrunk: f64,
     /// Row by row, 0 where the photo shows nothing.
     luma: Vec<u8>,
+    /// See [`fours`].
+    fours: Vec<[u8; 4]>,
 }
+
+/// Nothing is shown by one of four pixels: a pixel that shows something has at least a brightness of 1.
+const NOTHING: [u8; 4] = [0; 4];
 
 /// How many pixels of the small photo one of a camera's is wide.
 pub(super) fn shrunk(camera: &Camera) -> f64 {
@@ -28,21 +34,21 @@ impl SmallPhoto {
     /// Of a photo that is ready for comparing, and its camera.
     pub fn of(small: &RgbImage, camera: &Camera) -> Self {
         let (width, height) = small.dimensions();
+        // ITU-R BT.601's luma; at least 1 of what is shown.
+        let luma = small.pixels().map(|pixel| match pixel.0 {
+            [0, 0, 0] => 0,
+            [r, g, b] => {
+                let luma = 299 * u32::from(r) + 587 * u32::from(g) + 114 * u32::from(b);
+                (luma / 1000).clamp(1, 255) as u8
+            }
+        });
+        let luma: Vec<u8> = luma.collect();
         Self {
             width,
             height,
             shrunk: shrunk(camera),
-            // ITU-R BT.601's luma; at least 1 of what is shown.
-            luma: small
-                .pixels()
-                .map(|pixel| match pixel.0 {
-                    [0, 0, 0] => 0,
-                    [r, g, b] => {
-                        let luma = 299 * u32::from(r) + 587 * u32::from(g) + 114 * u32::from(b);
-                        (luma / 1000).clamp(1, 255) as u8
-                    }
-                })
-                .collect(),
+            fours: fours(&luma, width as usize),
+            luma,
         }
     }
 
@@ -52,37 +58,65 @@ impl SmallPhoto {
     }
 
     /// The brightness of a pixel; `None` where it shows nothing.
-    pub(super) fn pixel(&self, column: u32, row: u32) -> Option<f64> {
+    pub(super) fn pixel(&self, column: u32, row: u32) -> Option<f32> {
         let at = row as usize * self.width as usize + column as usize;
         let luma = self.luma.get(at).filter(|_| column < self.width)?;
-        (*luma > 0).then(|| f64::from(*luma))
+        (*luma > 0).then(|| f32::from(*luma))
     }
 
-    /// The brightness at a pixel of the camera's image, between the four pixels around it; `None` beyond their centres.
-    pub(super) fn at(&self, pixel: DVec2) -> Option<f64> {
-        // A pixel's centre is half a pixel in.
-        let place = pixel * self.shrunk - 0.5;
-        if !(place.x >= 0.0 && place.y >= 0.0) {
-            return None;
-        }
-        // Truncated on purpose; what is too large is in no image.
-        let (column, row) = (place.x as u32, place.y as u32);
-        if column.checked_add(1)? >= self.width || row.checked_add(1)? >= self.height {
-            return None;
-        }
-        // A sweep asks for this a hundred million times. Not by `fract`, which is a call where a processor's rounding is not taken
-        // for granted.
-        let (x, y) = (place.x - f64::from(column), place.y - f64::from(row));
-        let width = self.width as usize;
-        let at = row as usize * width + column as usize;
-        let above = self.luma.get(at..at + 2)?;
-        let below = self.luma.get(at + width..at + width + 2)?;
-        if above[0].min(above[1]).min(below[0]).min(below[1]) == 0 {
-            return None;
-        }
-        let along = |two: &[u8]| f64::from(two[0]) * (1.0 - x) + f64::from(two[1]) * x;
-        Some(along(above) * (1.0 - y) + along(below) * y)
+    /// A pixel of the camera's image as a place in the small photo: multiplied by the first, less the second, as a pixel's centre is
+    /// half a pixel in.
+    pub(super) fn placed(&self) -> (f64, f64) {
+        (self.shrunk, 0.5)
     }
+
+    /// The brightness at [places](Self::placed), each between the four pixels around it; `None` where one of them lies beyond their
+    /// centres, or beside a pixel that shows nothing.
+    ///
+    /// A sweep asks for this some million times: so what is the same for all places is done for all of them at once, step by step.
+    pub(super) fn at<const N: usize>(&self, xs: &[f32; N], ys: &[f32; N]) -> Option<[f32; N]> {
+        let last = |side: u32| side.saturating_sub(1) as f32;
+        let (right, bottom) = (last(self.width), last(self.height));
+        let is_inside = |x: f32, y: f32| (x >= 0.0) & (y >= 0.0) & (x < right) & (y < bottom);
+        let inside: [bool; N] = from_fn(|at| is_inside(xs[at], ys[at]));
+        if inside.contains(&false) {
+            return None;
+        }
+        // Truncated on purpose: no photo is compared with so many pixels. Not by `fract`, which is a call where a processor's
+        // rounding is not taken for granted.
+        let width = self.width as usize;
+        let (mut right, mut down, mut fours) = ([0.0; N], [0.0; N], [NOTHING; N]);
+        for at in 0..N {
+            let (column, row) = (xs[at] as u16, ys[at] as u16);
+            right[at] = xs[at] - f32::from(column);
+            down[at] = ys[at] - f32::from(row);
+            fours[at] = self.fours[usize::from(row) * width + usize::from(column)];
+        }
+        if fours.contains(&NOTHING) {
+            return None;
+        }
+        Some(from_fn(|at| {
+            let [a, b, c, d] = fours[at].map(f32::from);
+            let (above, below) = (a + (b - a) * right[at], c + (d - c) * right[at]);
+            above + (below - above) * down[at]
+        }))
+    }
+}
+
+/// The brightness of each pixel, of that to its right, and of those below the two; [`NOTHING`] where one of them is not there or shows
+/// nothing.
+fn fours(luma: &[u8], width: usize) -> Vec<[u8; 4]> {
+    let at = |place: usize| luma.get(place).copied().unwrap_or(0);
+    let four = |place: usize| {
+        let is_last = (place + 1) % width.max(1) == 0;
+        let four = [place, place + 1, place + width, place + width + 1].map(at);
+        if is_last || four.contains(&0) {
+            NOTHING
+        } else {
+            four
+        }
+    };
+    (0..luma.len()).map(four).collect()
 }
 
 #[cfg(test)]
@@ -109,12 +143,13 @@ mod tests {
         let grays = [[10, 20, 0], [30, 80, 50]];
         let image = RgbImage::from_fn(3, 2, |x, y| Rgb([grays[y as usize][x as usize]; 3]));
         let photo = SmallPhoto::of(&image, &camera);
-        let at = |x: f64, y: f64| photo.at(DVec2::new(x, y));
+        // Pixels of the image; places count from the first pixel's centre.
+        let at = |x: f32, y: f32| Some(photo.at(&[x - 0.5], &[y - 0.5])?[0]);
         assert_eq!(at(0.5, 0.5), Some(10.0));
         assert_eq!(at(0.75, 0.5), Some(12.5));
         assert_eq!(at(0.75, 1.0), Some((12.5 + 42.5) / 2.0));
         // Beside the black one, on the last row, beyond the first column.
         assert_eq!([at(1.75, 0.75), at(0.75, 1.5), at(0.25, 0.75)], [None; 3]);
-        assert_eq!(at(f64::NAN, 1.0), None);
+        assert_eq!(at(f32::NAN, 1.0), None);
     }
 }
