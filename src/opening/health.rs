@@ -63,6 +63,7 @@ impl HealthItem {
             Doubt::OtherColours { .. } | Doubt::Flipped { .. } => Some(Self::Colours),
             Doubt::OtherDistance { .. }
             | Doubt::OthersElsewhere { .. }
+            | Doubt::OthersNowhere { .. }
             | Doubt::PartlyThere { .. }
             | Doubt::MatchesNowhere { .. } => Some(Self::Distance),
             Doubt::StrangeCamera { .. }
@@ -175,6 +176,7 @@ impl Remedy {
             | Doubt::OtherColours { .. }
             | Doubt::OtherDistance { .. }
             | Doubt::OthersElsewhere { .. }
+            | Doubt::OthersNowhere { .. }
             | Doubt::PartlyThere { .. }
             | Doubt::MatchesNowhere { .. }
             | Doubt::Flipped { .. } => None,

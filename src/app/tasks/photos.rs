@@ -117,6 +117,9 @@ impl State {
                     },
                     time,
                 };
+                if thumbnail.colours.fits() {
+                    together.fits(index);
+                }
                 // Waits until the window has taken some; a cancelled job gives up.
                 if !steps.offer(|state: &mut Self| state.take_thumbnail(thumbnail), progress) {
                     return Vec::new();

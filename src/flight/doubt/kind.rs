@@ -4,7 +4,7 @@
 use super::Doubt;
 
 /// All words.
-const KINDS: [&str; 48] = [
+const KINDS: [&str; 49] = [
     "no-scale",
     "off-surface",
     "no-point",
@@ -52,6 +52,7 @@ const KINDS: [&str; 48] = [
     "partly-there",
     "matches-nowhere",
     "others-elsewhere",
+    "others-nowhere",
     "flipped",
 ];
 
@@ -118,6 +119,7 @@ impl Doubt {
             Self::PartlyThere { .. } => "partly-there",
             Self::MatchesNowhere { .. } => "matches-nowhere",
             Self::OthersElsewhere { .. } => "others-elsewhere",
+            Self::OthersNowhere { .. } => "others-nowhere",
             Self::Flipped { .. } => "flipped",
         }
     }

@@ -307,6 +307,12 @@ pub enum Doubt {
         /// At so many times its distance, their median.
         factor: f64,
     },
+    /// Whether it sees the surface in its place it does not tell; photos of the flight that could are alike at no distance of it, and none
+    /// tells where it is.
+    OthersNowhere {
+        /// So many.
+        photos: usize,
+    },
     /// The photo's colours match those of the surface when it is turned over.
     Flipped {
         /// Pearson's correlation as the photo is.
@@ -343,6 +349,7 @@ impl Doubt {
                 | Self::FromBehind
                 | Self::TurnedMesh
                 | Self::OthersElsewhere { .. }
+                | Self::OthersNowhere { .. }
         );
         is_of_its_place || self.is_of_pixels()
     }

@@ -349,6 +349,10 @@ impl fmt::Display for Doubt {
                     "it does not show by itself where the surface is, and {who} it {place} than it is, none in its place: its scale, too, may be too {wrong} by about as much; look whether surface, poses, heights and focal length are of one flight and one day"
                 )
             }
+            Self::OthersNowhere { photos } => write!(
+                f,
+                "it does not show by itself where the surface is, and the {photos} photos of the flight that could are alike with those beside them at no distance of it: look whether photos, poses and surface are of one flight"
+            ),
             Self::Flipped {
                 correlation,
                 flipped,

@@ -80,9 +80,10 @@ impl Doubt {
             | Self::OtherHeights { .. }
             | Self::FlyingHeight { .. }
             | Self::LaserRange { .. } => (OnPhoto::Nothing, InView::FromSide),
-            Self::OtherColours { .. } | Self::Flipped { .. } | Self::MatchesNowhere { .. } => {
-                (OnPhoto::Nothing, InView::ThroughCamera)
-            }
+            Self::OtherColours { .. }
+            | Self::Flipped { .. }
+            | Self::MatchesNowhere { .. }
+            | Self::OthersNowhere { .. } => (OnPhoto::Nothing, InView::ThroughCamera),
             Self::NoScale(_)
             | Self::UnitUnknown
             | Self::UnitNotSystems { .. }

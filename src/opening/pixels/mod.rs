@@ -67,6 +67,9 @@ pub fn compare_pixels(
             None => together.give_up(index),
         }
         if !wants_colours {
+            if evidence.colours == ColoursFound::NothingAgainst {
+                together.fits(index);
+            }
             continue;
         }
         let found = match read {
@@ -75,6 +78,9 @@ pub fn compare_pixels(
             Some(Some(Err(error))) => Colours::Unreadable(error.fault.to_string()),
             Some(Some(Ok(_))) => Colours::of_photo(flight, index, small.as_ref()),
         };
+        if found.fits() {
+            together.fits(index);
+        }
         colours.push((index, found));
     }
     Ok(ComparedPixels {

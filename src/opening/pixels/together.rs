@@ -1,6 +1,6 @@
 //! Whether photos and those beside them see the surface where it is.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use image::RgbImage;
 
@@ -29,6 +29,11 @@ pub enum Together {
         photos: usize,
         /// At so many times its distance, their median.
         factor: f64,
+    },
+    /// It does not tell, or is beside none; those of the flight that were compared are alike at no distance of the surface.
+    OthersNowhere {
+        /// So many.
+        photos: usize,
     },
 }
 
@@ -68,6 +73,7 @@ impl Together {
             &Self::OthersElsewhere { photos, factor } => {
                 Some(Doubt::OthersElsewhere { photos, factor })
             }
+            &Self::OthersNowhere { photos } => Some(Doubt::OthersNowhere { photos }),
         }
     }
 
@@ -78,6 +84,11 @@ impl Together {
             Self::OthersElsewhere { photos, .. } => {
                 return format!(
                     "it does not tell where the surface is, and the {photos} that do see it elsewhere"
+                );
+            }
+            Self::OthersNowhere { photos } => {
+                return format!(
+                    "it does not tell where the surface is, and the {photos} that could are alike at no distance of it"
                 );
             }
         };
@@ -131,6 +142,8 @@ pub struct PhotosTogether {
     kept: BTreeMap<usize, (SmallPhoto, ScaleField)>,
     /// What was seen, parallel to the pairs; `None` while a photo is not read.
     sights: Vec<Option<PairSight>>,
+    /// Those whose colours are the surface's.
+    fitting: BTreeSet<usize>,
 }
 
 impl PhotosTogether {
@@ -153,6 +166,7 @@ impl PhotosTogether {
             sights: vec![None; pairs.len()],
             pairs,
             kept: BTreeMap::new(),
+            fitting: BTreeSet::new(),
         })
     }
 
@@ -193,6 +207,11 @@ impl PhotosTogether {
         self.forget_done();
     }
 
+    /// A photo's colours are those of the surface where it lies: where it is like another one at no distance, that one is to blame.
+    pub fn fits(&mut self, photo: usize) {
+        self.fitting.insert(photo);
+    }
+
     /// Nothing comes of a photo: nobody waits for it any more.
     pub fn give_up(&mut self, photo: usize) {
         if !self.wants(photo) {
@@ -230,19 +249,29 @@ impl PhotosTogether {
             said_by(&its.collect::<Vec<_>>())
         };
         let mut said: Vec<_> = (0..photos.len()).map(of_photo).collect();
-        doubt_strangers(said.iter_mut().flatten().map(|(_, sight)| sight));
-        let elsewhere = all_elsewhere(said.iter().flatten().map(|(_, sight)| sight));
+        for photo in &self.fitting {
+            if let Some(Some((_, sight @ PairSight::Nowhere))) = said.get_mut(*photo) {
+                *sight = PairSight::Unclear;
+            }
+        }
+        let fits = !self.fitting.is_empty();
+        doubt_strangers(said.iter_mut().flatten().map(|(_, sight)| sight), fits);
+        let sights = || said.iter().flatten().map(|(_, sight)| sight);
+        let elsewhere = all_elsewhere(sights());
+        let nowhere = all_nowhere(sights()).filter(|_| !fits);
         let all = said.into_iter().enumerate();
         let together = all.filter_map(|(photo, said)| {
             let together = match (said, elsewhere) {
                 (None | Some((_, PairSight::Unclear)), Some((photos, factor))) => {
                     Together::OthersElsewhere { photos, factor }
                 }
-                (Some((other, sight)), _) => Together::Pair {
-                    other: photos[other].name.clone(),
-                    sight,
-                },
-                (None, None) => return None,
+                (Some((other, sight)), _) if nowhere.is_none() || sight != PairSight::Unclear => {
+                    Together::Pair {
+                        other: photos[other].name.clone(),
+                        sight,
+                    }
+                }
+                _ => Together::OthersNowhere { photos: nowhere? },
             };
             Some((photo, together))
         });
@@ -264,14 +293,28 @@ fn all_elsewhere<'a>(sights: impl Iterator<Item = &'a PairSight>) -> Option<(usi
     Some((factors.len(), median(&mut factors)?))
 }
 
+/// How many photos are alike with those beside them at no distance, where none tells where the surface is: then nothing speaks for the
+/// others, either.
+fn all_nowhere<'a>(sights: impl Iterator<Item = &'a PairSight>) -> Option<usize> {
+    let mut strangers = 0;
+    for sight in sights {
+        match sight {
+            PairSight::Nowhere => strangers += 1,
+            PairSight::Unclear => {}
+            PairSight::There(_) | PairSight::Partly(_) | PairSight::Elsewhere(_) => return None,
+        }
+    }
+    (strangers > 0).then_some(strangers)
+}
+
 /// Two photos that are alike at no distance may be of other light, or of leaves and water. They speak against themselves where others of
-/// their flight tell, or where there are more such photos.
-fn doubt_strangers<'a>(sights: impl Iterator<Item = &'a mut PairSight>) {
+/// their flight tell, by their stones or by their colours (`fits`), or where there are more such photos.
+fn doubt_strangers<'a>(sights: impl Iterator<Item = &'a mut PairSight>, fits: bool) {
     let all: Vec<&mut PairSight> = sights.collect();
     let count = |is: fn(&PairSight) -> bool| all.iter().filter(|sight| is(sight)).count();
     let strangers = count(|sight| matches!(sight, PairSight::Nowhere));
     let telling = count(|sight| !matches!(sight, PairSight::Nowhere | PairSight::Unclear));
-    if telling == 0 && strangers < 3 {
+    if telling == 0 && !fits && strangers < 3 {
         let strangers = all.into_iter();
         let strangers = strangers.filter(|sight| matches!(sight, PairSight::Nowhere));
         strangers.for_each(|sight| *sight = PairSight::Unclear);
@@ -375,9 +418,23 @@ mod tests {
             ),
         ] {
             let mut found = sights.clone();
-            doubt_strangers(found.iter_mut());
+            doubt_strangers(found.iter_mut(), false);
             assert_eq!(found, wanted, "{sights:?}");
+            let mut found = sights.clone();
+            doubt_strangers(found.iter_mut(), true);
+            assert_eq!(found, sights);
         }
+    }
+
+    /// Nothing speaks for a photo that was compared with none where all that were are of other rock.
+    #[test]
+    fn where_all_that_could_tell_are_strangers_all_are_doubted() {
+        let (stranger, unclear) = (PairSight::Nowhere, PairSight::Unclear);
+        let there = PairSight::There(0.001);
+        let of = |sights: &[PairSight]| all_nowhere(sights.iter());
+        assert_eq!(of(&[stranger, unclear, stranger, stranger]), Some(3));
+        assert_eq!(of(&[stranger, there, stranger, stranger]), None);
+        assert_eq!(of(&[unclear, unclear]), None);
     }
 
     /// A photo that does not tell is no surer than those of its flight that do.

@@ -72,7 +72,10 @@ impl PairSight {
     pub fn of(first: Look, second: Look) -> Self {
         let (first, second) = match (first, second) {
             (Look::At(first), Look::At(second)) => (first, second),
-            (Look::Nowhere, Look::Nowhere) => return Self::Nowhere,
+            (Look::Nowhere, Look::Nowhere | Look::FewNowhere)
+            | (Look::FewNowhere, Look::Nowhere) => {
+                return Self::Nowhere;
+            }
             _ => return Self::Unclear,
         };
         let (a, b) = (first.factor - 1.0, second.factor - 1.0);

@@ -35,7 +35,15 @@ const THERE: f64 = 1.5;
 
 /// Another photo that shows fewer of the patches, or a smaller share of them, may match none by chance.
 const MANY: usize = 100;
-const MUCH: f64 = 0.2;
+const MUCH: f64 = 0.15;
+
+/// Of fewer patches of a photo that is much farther away even a right one may match none clearly: of 44 and 42 so seen one did not, of 50 and
+/// more all did.
+const FEWEST_OF_NONE: usize = 60;
+
+/// The best of some hundred wrong factors has this mean correlation times the root of the patches: of 66 to 800 patches of other photos none
+/// was above 1.0, of right ones none below 1.6.
+const BY_CHANCE: f64 = 1.2;
 
 /// What both photos show is looked at in so many parts along each side, where patches match or do not.
 const PARTS: usize = 4;
@@ -67,6 +75,8 @@ pub enum Look {
     At(SeenAt),
     /// By its pose the other photo shows many of them, and it looks like them at no distance.
     Nowhere,
+    /// The same of few of them, or of a small share: where the other way round it is [`Self::Nowhere`], so it is of both.
+    FewNowhere,
     /// They do not tell: hardly any parallax, few that the other shows, or they match at no distance clearly.
     Unclear,
 }
@@ -277,9 +287,12 @@ impl<'a> Sweep<'a> {
         if best.mean < LEAST_MATCH || best.weight() - usual < clear * deviation {
             let shown = here.patches as f64 / self.patches.len() as f64;
             let is_told = here.patches >= MANY && shown >= MUCH;
-            return Some(match best.mean < LEAST_MATCH && is_told {
-                true => Look::Nowhere,
-                false => Look::Unclear,
+            let root = (here.patches as f64).sqrt();
+            let is_chance = best.weight() < (LEAST_MATCH * root).max(BY_CHANCE);
+            return Some(match best.mean < LEAST_MATCH || is_chance {
+                true if is_told => Look::Nowhere,
+                true if here.patches >= FEWEST_OF_NONE => Look::FewNowhere,
+                _ => Look::Unclear,
             });
         }
         let moved = top_of(&all, place);

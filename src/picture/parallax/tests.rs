@@ -255,6 +255,43 @@ fn a_wrong_focal_length_is_a_wrong_distance() {
     assert!((factor - 1.1).abs() < 0.03, "{factor}");
 }
 
+/// A close one, half beside what the other shows, shows an eighth of it: that way round there are few patches, and what the other way round
+/// is like nothing is not excused by them.
+#[test]
+fn a_close_photo_of_other_rock_is_like_nothing() {
+    let camera = camera();
+    let poses = [
+        Pose::from_tilt_pan(DVec3::new(-1.5, 0.0, 10.0), [90.0, 0.0]),
+        Pose::from_tilt_pan(DVec3::new(4.5, 0.4, 5.0), [90.0, 0.0]),
+    ];
+    let away = Pose::from_tilt_pan(DVec3::new(103.0, 50.0, 5.0), [90.0, 0.0]);
+    let surface = floor(0.0);
+    let of = |close: &Pose| {
+        let photos = [photo(&poses[0]), photo(close)];
+        let small = photos.each_ref().map(|photo| small(photo, &camera));
+        let sighted = [0, 1].map(|at| Sighted {
+            photo: &small[at],
+            camera: &camera,
+            pose: &poses[at],
+        });
+        [0, 1].map(|at| seen_at(&patches(&surface, &sighted[at]), &sighted[1 - at]))
+    };
+    let [wide, close] = of(&poses[1]);
+    let right = PairSight::of(wide, close);
+    assert!(matches!(right, PairSight::There(_)), "{wide:?} {close:?}");
+    let [wide, _] = of(&away);
+    assert_eq!(wide, Look::FewNowhere);
+    for (first, second, wanted) in [
+        (wide, Look::Nowhere, PairSight::Nowhere),
+        (Look::Nowhere, wide, PairSight::Nowhere),
+        // Few both ways round say nothing, nor do many that are like nothing beside some that may be.
+        (wide, wide, PairSight::Unclear),
+        (Look::Nowhere, Look::Unclear, PairSight::Unclear),
+    ] {
+        assert_eq!(PairSight::of(first, second), wanted);
+    }
+}
+
 #[test]
 fn other_photos_tell_nothing() {
     let [first, _] = poses().each_ref().map(photo);
