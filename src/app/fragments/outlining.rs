@@ -140,7 +140,11 @@ impl State {
             let left_out = delineation::photo::left_out(&settings, posed, camera);
             // She says which photo it is.
             let file = files.get(photo).and_then(|file| file.path.as_deref());
-            let masks = others.of_flights_photo(&flight, (photo, file), &left_out, true);
+            // A photo that cannot be read says so where it is shown.
+            let pixels = files.get(photo).and_then(|file| file.pixels()?.ok());
+            let pixels = pixels.and_then(|of| delineation::photo::undistorted(&of, camera).ok());
+            let masks =
+                others.of_flights_photo(&flight, (photo, file), pixels.as_ref(), &left_out, true);
             let masks = masks.map_err(|fault| fault.to_string())?;
             Ok((masks.labels, masks.notes))
         };

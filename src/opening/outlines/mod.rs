@@ -1,6 +1,7 @@
 //! Outlines of fragments that were saved beside a flight.toml to go on with: `fragments/NAME.png`, a label image, with
 //! `fragments/NAME_outlines.json`, which says what it is of.
 
+mod followed;
 mod named_files;
 mod of_others;
 mod turned;

@@ -2,12 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
+use image::RgbImage;
+
 use crate::camera::Camera;
 use crate::delineation::leave_out;
 use crate::fault::Fault;
 use crate::flight::Flight;
 use crate::formats::photos::photo_metadata;
 use crate::formats::{FileError, MaskFile, Masks, OutlinedPhoto};
+use crate::outlines::followed::not_followed;
 use crate::outlines::named_files::{
     also_taken_by, candidates, files_below, files_of_many, folders_shared, has_folder, is_anothers,
     is_namesake, is_of_stem, is_photo, is_told_apart, may_be_outlines, names, told, with_photo,
@@ -119,8 +122,8 @@ impl OutlinesOfOthers {
     }
 
     /// The label image of a flight's undistorted photo without what of it is `left_out` (`delineation::photo::left_out`), with what
-    /// is to be said about it; `photo_file` is where the photo is, if it is there. `is_only`: no other photo is asked for, so that a file of
-    /// one photo is of this one.
+    /// is to be said about it; `photo_file` is where the photo is, if it is there, and `pixels` is the undistorted one. `is_only`: no other
+    /// photo is asked for, so that a file of one photo is of this one.
     ///
     /// # Errors
     /// Where there is none of this photo, or it cannot be read; the file is named.
@@ -128,6 +131,7 @@ impl OutlinesOfOthers {
         &self,
         flight: &Flight,
         (index, photo_file): (usize, Option<&Path>),
+        pixels: Option<&RgbImage>,
         left_out: &[bool],
         is_only: bool,
     ) -> Result<Masks, Fault> {
@@ -140,6 +144,8 @@ impl OutlinesOfOthers {
         let camera = (flight.camera(photo), shown);
         let mut masks = self.of_photo(&photo.name, &names, camera, is_only)?;
         leave_out(&mut masks.labels, left_out);
+        let not_followed = pixels.and_then(|pixels| not_followed(pixels, &masks.labels));
+        masks.notes.extend(not_followed);
         if is_only {
             masks
                 .notes

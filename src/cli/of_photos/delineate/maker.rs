@@ -103,7 +103,7 @@ impl<'a> Maker<'a> {
         if let Some(others) = self.others {
             let file = self.opened.photo_files.get(index);
             let of = (index, file.and_then(|file| file.path.as_deref()));
-            let masks = others.of_flights_photo(flight, of, left_out, self.is_only)?;
+            let masks = others.of_flights_photo(flight, of, Some(image), left_out, self.is_only)?;
             return Ok(Outlined {
                 labels: masks.labels,
                 by: OutlinedBy::Masks,
