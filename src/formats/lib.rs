@@ -56,8 +56,8 @@ pub use packages::reconstruction::{
 pub use photos::photos_below::PhotosBelow;
 pub use poses::poses_csv::{PoseLine, PosesFile};
 pub use poses::position_list::{
-    ControlPoints, NamedPosition, PositionList, control_list_text, positions_of_photos,
-    read_control_points, read_positions,
+    ControlPoints, KnownPlaces, NamedPosition, PositionList, control_list_text,
+    positions_of_photos, read_control_points, read_known_places, read_positions,
 };
 pub use poses::trajectory::TrajectoryFormat;
 pub use read::{

@@ -14,9 +14,8 @@ use crate::geodesy::is_stated;
 use crate::jobs::Progress;
 use crate::packages::reconstruction::Project;
 use crate::packages::{metashape, open3d};
-use crate::photos::image_names::{Ending, is_called};
 use crate::poses::poses_csv::PosesFile;
-use crate::poses::position_list::{ControlPoints, read_control_points, read_positions};
+use crate::poses::position_list::{KnownPlaces, read_known_places};
 use crate::poses::trajectory::{self, Trajectory, TrajectoryFormat};
 use crate::poses::{poses_csv, poses_opk};
 
@@ -62,29 +61,20 @@ fn known_places(path: &Path, format: CloudFormat) -> Option<Fault> {
     if format != CloudFormat::Xyz {
         return None;
     }
-    let of_photos = |count: usize| (format!("the positions of {count} photos"), "positions");
-    let (what, option) = match (read_control_points(path), read_positions(path)) {
-        (Ok(list), _) if are_of_photos(&list) => of_photos(list.list.points.len()),
-        (Ok(list), _) => (
-            format!("{} ground control points", list.list.points.len()),
-            "gcp",
-        ),
-        (_, Ok(list)) => of_photos(list.positions.len()),
-        _ => return None,
+    let (what, option) = match read_known_places(path)? {
+        KnownPlaces::ControlPoints(list) => {
+            let count = list.list.points.len();
+            (format!("{count} ground control points"), "gcp")
+        }
+        KnownPlaces::OfPhotos(list) => {
+            let count = list.positions.len();
+            (format!("the positions of {count} photos"), "positions")
+        }
     };
     Some(Fault::new(
         format!("it holds {what}, not a surface"),
         format!("give it to 'fragscale georeference' as --{option}"),
     ))
-}
-
-/// Whether the points of a list are called as images are: then they are places of photos, whose columns a list of points has, too.
-fn are_of_photos(list: &ControlPoints) -> bool {
-    let points = &list.list.points;
-    !points.is_empty()
-        && points
-            .iter()
-            .all(|point| is_called(&point.name, Ending::Raw))
 }
 
 /// Reads a cloud or mesh that is in memory, as a file of that format. A glTF's buffers in files of

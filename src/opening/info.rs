@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use glam::DVec2;
 use serde_json::{Value, json};
 
 use crate::camera::{Camera, Pose};
@@ -13,9 +14,10 @@ use crate::formats::packages::ros::Recording;
 use crate::formats::photos::photo_metadata::PhotoMetadata;
 use crate::formats::poses::trajectory::Trajectory;
 use crate::formats::{
-    CloudFile, DistributionColumns, FileError, ImageUnit, Kind, MissionFile, Origin, Package,
-    PhotosAlone, PosesFile, Reconstruction, Sizes, detect, read_camera, read_cloud, read_mission,
-    read_photos, read_poses, read_project, read_size_distributions, read_trajectory,
+    CloudFile, CloudFormat, ControlPoints, DistributionColumns, FileError, ImageUnit, Kind,
+    KnownPlaces, MissionFile, Origin, Package, PhotosAlone, PosesFile, Reconstruction, Sizes,
+    detect, read_camera, read_cloud, read_known_places, read_mission, read_photos, read_poses,
+    read_project, read_size_distributions, read_trajectory,
 };
 use crate::fragmentation::DistributionSet;
 use crate::geometry::Bounds;
@@ -30,8 +32,22 @@ use fragscale_core::plan::{Height, LostSignal};
 /// # Errors
 /// With the file and the place in it.
 pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
-    let kind = detect(path)?;
+    // Lists of known places have columns like a cloud's, and DJI's no name that tells.
+    let or_places = |error| {
+        read_known_places(path)
+            .as_ref()
+            .map(places_info)
+            .ok_or(error)
+    };
+    let kind = match detect(path) {
+        Ok(kind) => kind,
+        Err(error) => return or_places(error),
+    };
     Ok(match kind {
+        Kind::Cloud(CloudFormat::Xyz) => match read_cloud(path, progress) {
+            Ok(file) => cloud_info(&file),
+            Err(error) => or_places(error)?,
+        },
         Kind::Cloud(_) => cloud_info(&read_cloud(path, progress)?),
         Kind::Camera => camera_info(&read_camera(path)?),
         Kind::Poses => poses_info(&read_poses(path)?),
@@ -85,6 +101,46 @@ fn cloud_info(file: &CloudFile) -> Value {
         "crs": file.crs,
         "warnings": warnings,
     })
+}
+
+/// Known places: control points with their marks, or where photos were taken; in the list's own system.
+fn places_info(places: &KnownPlaces) -> Value {
+    match places {
+        KnownPlaces::ControlPoints(ControlPoints { list, warnings }) => {
+            let mark = |(photo, pixel): &(String, DVec2)| json!({"photo": photo, "pixel": pixel.to_array()});
+            let points = list.points.iter().map(|point| {
+                json!({
+                    "name": point.name,
+                    "position": point.position.map(|position| position.to_array()),
+                    "marks": point.marks.iter().map(mark).collect::<Vec<_>>(),
+                })
+            });
+            let marks = list.points.iter().map(|point| point.marks.len());
+            json!({
+                "kind": "control-points",
+                "crs": list.crs,
+                "points": points.collect::<Vec<_>>(),
+                "marks": marks.sum::<usize>(),
+                "scale_bars": list.bars.len(),
+                "warnings": warnings,
+            })
+        }
+        KnownPlaces::OfPhotos(list) => {
+            let positions = list.positions.iter().map(|of| {
+                json!({
+                    "photo": of.name,
+                    "position": of.position.to_array(),
+                    "accuracy": of.accuracy.map(|accuracy| accuracy.to_array()),
+                })
+            });
+            json!({
+                "kind": "positions",
+                "crs": list.crs,
+                "positions": positions.collect::<Vec<_>>(),
+                "warnings": list.warnings,
+            })
+        }
+    }
 }
 
 /// A drone's mission: degrees of WGS 84, metres, metres a second; headings clockwise from true north.
@@ -319,6 +375,7 @@ fn flight_info(flight: &Flight, warnings: &[String]) -> Value {
         "flight": parts.name,
         // Of a model in a frame of its own nobody knows it.
         "world_unit": parts.unit_known.then(|| parts.unit.symbol()),
+        "crs": parts.as_read.system.as_ref().map(|system| &system.name),
         "image": image,
         "surface_vertices": parts.surface.vertices().len(),
         "cameras": parts.cameras.iter().map(camera_value).collect::<Vec<_>>(),
@@ -393,6 +450,43 @@ mod tests {
         // What is no photo is an error as ever.
         fs::write(&screenshot, "x").unwrap();
         assert!(info(&screenshot, &Progress::default()).is_err());
+    }
+
+    /// OpenDroneMap's list with marks (whose pixels count from the first one's centre, ours from its corner), without, and DJI's of a Phantom's photos.
+    #[test]
+    fn known_places_are_said_to_be_that() {
+        let folder = tempfile::tempdir().unwrap();
+        let of = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            fs::write(&path, text).unwrap();
+            info(&path, &Progress::default()).unwrap()
+        };
+        let said = of(
+            "gcp_list.txt",
+            "EPSG:32633\n500000 5000000 100 320 240 a.jpg 7\n500000 5000000 100 10 20 b.jpg 7\n",
+        );
+        let marks = json!([
+            {"photo": "a.jpg", "pixel": [320.5, 240.5]},
+            {"photo": "b.jpg", "pixel": [10.5, 20.5]},
+        ]);
+        let point = json!({"name": "7", "position": [500000.0, 5000000.0, 100.0], "marks": marks});
+        assert_eq!(said["points"], json!([point]));
+        let of_list = json!(["control-points", "EPSG:32633", 2]);
+        assert_eq!(json!([said["kind"], said["crs"], said["marks"]]), of_list);
+        let said = of("geo.txt", "EPSG:4326\na.jpg 7.5 50.25 160\n");
+        assert_eq!(said["kind"], "positions");
+        assert_eq!(
+            said["positions"],
+            json!([{"photo": "a.jpg", "position": [7.5, 50.25, 160.0], "accuracy": null}])
+        );
+        let line = "2\t296288.242869\t[2211]\t3,N\t0,E\t75,V\t47.5,Lat\t16.25,Lon\t512.998,Ellh\t\
+            0.01, 0.02, 0.03\t50,Q\n";
+        let said = of("Timestamp.MRK", line);
+        assert_eq!(said["kind"], "positions");
+        // What is neither is an error as ever.
+        let path = folder.path().join("letter.txt");
+        fs::write(&path, "Dear all,\nthe blast is at noon, as ever.\n").unwrap();
+        assert!(info(&path, &Progress::default()).is_err());
     }
 
     /// Home and one photo, in Mission Planner's lines; whatever the file is called.

@@ -29,6 +29,7 @@ use crate::control::{ControlList, ControlPoint};
 use crate::fault::{Fault, first_names, one_line};
 use crate::files::{FLIGHT_MARK, FileError, read_text};
 use crate::packages::odm::crs_from_text;
+use crate::photos::image_names::{Ending, is_called};
 use crate::photos::photo_metadata;
 use crate::photos::photos_below::PhotosBelow;
 
@@ -65,6 +66,35 @@ pub struct ControlPoints {
     pub list: ControlList,
     /// What the reader had to assume or leave out, one sentence each.
     pub warnings: Vec<String>,
+}
+
+/// A list of known places, whichever it is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum KnownPlaces {
+    /// Of ground control points.
+    ControlPoints(ControlPoints),
+    /// Where photos were taken.
+    OfPhotos(PositionList),
+}
+
+/// Reads a list of known places; `None` of what is none, or has faults.
+pub fn read_known_places(path: &Path) -> Option<KnownPlaces> {
+    let text = read_text(path).ok()?;
+    let points = control_points_from_text(&text).ok();
+    let positions = || Some(KnownPlaces::OfPhotos(positions_from_text(&text).ok()?));
+    match points {
+        Some(list) if !are_of_photos(&list) => Some(KnownPlaces::ControlPoints(list)),
+        _ => positions(),
+    }
+}
+
+/// Whether the points of a list are called as images are: then they are places of photos, whose columns a list of points has, too.
+fn are_of_photos(list: &ControlPoints) -> bool {
+    let points = &list.list.points;
+    !points.is_empty()
+        && points
+            .iter()
+            .all(|point| is_called(&point.name, Ending::Raw))
 }
 
 /// Reads a list of photos' positions.
