@@ -66,7 +66,7 @@ impl std::error::Error for Fault {}
 
 /// The longest a sentence gets, in characters: messages quote broken files, whose lines may have
 /// millions.
-const LONGEST: usize = 400;
+const LONGEST: usize = 700;
 
 /// Folds every run of white space and control characters into one space and cuts what is too long:
 /// messages quote bytes of broken files, and an error is one line whatever they hold.
@@ -88,16 +88,35 @@ pub fn one_line(text: &str) -> String {
     line
 }
 
-/// How many of many names a sentence has.
-const NAMED: usize = 3;
+/// How many of many names a sentence has at most, and from how many characters on it has fewer.
+const NAMED: usize = 12;
+const LONG_NAMES: usize = 180;
 
-/// The first few names, and dots for more: what a sentence says of things that may be hundreds.
+/// How many it has however long they are.
+const A_FEW: usize = 3;
+
+/// The first names, and how many more there are: what a sentence says of things that may be hundreds.
 pub fn first_names(names: impl IntoIterator<Item = impl AsRef<str>>) -> String {
-    let mut names = names.into_iter();
-    let first: Vec<_> = names.by_ref().take(NAMED).collect();
-    let first: Vec<&str> = first.iter().map(AsRef::as_ref).collect();
-    let dots = if names.next().is_some() { ", ..." } else { "" };
-    first.join(", ") + dots
+    let mut said = String::new();
+    let (mut named, mut more) = (0, 0);
+    for name in names {
+        let name = name.as_ref();
+        let length = |text: &str| text.chars().count();
+        let fits = || named < NAMED && length(&said) + length(name) <= LONG_NAMES;
+        if more > 0 || named >= A_FEW && !fits() {
+            more += 1;
+            continue;
+        }
+        if named > 0 {
+            said.push_str(", ");
+        }
+        said.push_str(name);
+        named += 1;
+    }
+    match more {
+        0 => said,
+        more => format!("{said} and {more} more"),
+    }
 }
 
 /// What is to be said of many things by their names, one sentence for each cause in the order of its first: the name and the
@@ -165,7 +184,7 @@ mod tests {
         let said = said.map(|(name, text)| (name, text.to_owned()));
         assert_eq!(
             by_cause(said, "photos"),
-            ["4 photos (a, c, d, ...): dark", "b: gone"]
+            ["4 photos (a, c, d, e): dark", "b: gone"]
         );
         assert!(by_cause([], "photos").is_empty());
         let said = ["7 are small", "12 are small", "are small", "7 are large"];
@@ -179,6 +198,24 @@ mod tests {
                 "c: are small",
                 "d: 7 are large"
             ]
+        );
+    }
+
+    /// Which photos are meant can be read, unless they are very many.
+    #[test]
+    fn names_are_said_until_they_are_many() {
+        let names = |count: usize| (1..=count).map(|number| format!("IMG_{number:04}.jpg"));
+        assert_eq!(first_names(names(0)), "");
+        assert_eq!(first_names(names(2)), "IMG_0001.jpg, IMG_0002.jpg");
+        let twelve = names(12).collect::<Vec<_>>().join(", ");
+        assert_eq!(first_names(names(12)), twelve);
+        assert_eq!(first_names(names(20)), format!("{twelve} and 8 more"));
+        // Three of 100 characters, and no more.
+        let long = ["x"; 3].map(|letter| letter.repeat(100));
+        let more = [&long[..], &["y".to_owned()]].concat();
+        assert_eq!(
+            first_names(&more),
+            format!("{} and 1 more", long.join(", "))
         );
     }
 

@@ -205,15 +205,33 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
             Kind::Cloud(CloudFormat::Xyz)
         }
         _ => {
-            return Err(FileError::new(
-                path,
-                Fault::new(
+            let fault = match archive(&start, extension) {
+                Some(kind) => Fault::new(
+                    format!("{kind}, which is not looked into"),
+                    "unpack it first, then open the folder or the file that was in it",
+                ),
+                None => Fault::new(
                     "a file of no known kind",
                     format!("supported are {SUPPORTED}"),
                 ),
-            ));
+            };
+            return Err(FileError::new(path, fault));
         }
     })
+}
+
+/// Which archive a file is, by its first bytes. Other files are zip inside (.xlsx, .kmz): these are told by their names.
+fn archive(start: &[u8], extension: &str) -> Option<&'static str> {
+    let is_zip = matches!(extension, "zip" | "");
+    let known = [
+        (&b"PK\x03\x04"[..], "a zip archive", is_zip),
+        (b"7z\xbc\xaf\x27\x1c", "a 7z archive", true),
+        (b"Rar!\x1a\x07", "a rar archive", true),
+        (b"\x1f\x8b", "a gzip archive", true),
+    ];
+    let mut archives = known.into_iter();
+    let found = archives.find(|(magic, _, named)| *named && start.starts_with(magic));
+    found.map(|(_, kind, _)| kind)
 }
 
 /// How many rows and columns a text has that is nothing but a camera's matrix (3 x 3) or a pose's (4 x 4). Their last row is what
@@ -290,6 +308,28 @@ mod tests {
     use std::fs;
 
     use super::*;
+
+    /// The first bytes are those of the formats' own descriptions (APPNOTE 4.3.7, 7zFormat.txt, RAR 5.0 technote, RFC 1952).
+    #[test]
+    fn archives_are_to_be_unpacked() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, start, what) in [
+            ("Flug 31.zip", &b"PK\x03\x04\x14\0"[..], "a zip archive"),
+            ("flight", b"PK\x03\x04\x14\0", "a zip archive"),
+            ("flight.7z", b"7z\xbc\xaf\x27\x1c\0\x04", "a 7z archive"),
+            ("flight.rar", b"Rar!\x1a\x07\x01\0", "a rar archive"),
+            ("pile.ply.GZ", b"\x1f\x8b\x08\0", "a gzip archive"),
+            ("sizes.xlsx", b"PK\x03\x04\x14\0", "a file of no known kind"),
+            ("photo.zip", b"no such thing", "a file of no known kind"),
+        ] {
+            let path = folder.path().join(name);
+            fs::write(&path, start).unwrap();
+            let fault = detect(&path).unwrap_err().fault;
+            assert!(fault.what.starts_with(what), "{name}: {fault}");
+            let unpack = fault.remedy.starts_with("unpack it first");
+            assert_eq!(unpack, what.ends_with("archive"), "{name}: {fault}");
+        }
+    }
 
     /// K.txt of the photos of Sceaux, as openMVG's data sets have it, and a pose's matrix.
     #[test]

@@ -7,7 +7,8 @@ use crate::fault::Fault;
 use crate::files::FileError;
 use crate::formats::missions::no_flight_but_mission;
 use crate::formats::tables::size_distributions::no_flight_but_sizes;
-use crate::formats::{Kind, Package, detect, is_of_photos};
+use crate::formats::{Kind, Package, detect};
+use crate::meant::is_of_their_photos;
 
 /// How several of them are called.
 const PHOTOS: &str = "folders of photos";
@@ -32,7 +33,7 @@ impl Dropped {
         for path in paths {
             let kind = match detect(path) {
                 // Flights in its folders are none that are meant beside one.
-                Err(_) if paths.len() > 1 && is_of_photos(path) => {
+                Err(_) if is_of_their_photos(path, paths) => {
                     Kind::Reconstruction(Package::Photos, path.clone())
                 }
                 kind => kind?,

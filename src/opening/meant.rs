@@ -1,8 +1,8 @@
 //! What is meant by a folder that holds no flight itself: the one below it, or a choice.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use crate::formats::{Candidate, candidates, detect, is_of_photos};
+use crate::formats::{Candidate, Kind, Package, candidates, detect, is_of_photos};
 
 /// The same paths, but for each folder above a single flight or reconstruction that one. Beside others a folder of
 /// pictures is that of their photos, whatever lies in its folders.
@@ -12,8 +12,7 @@ use crate::formats::{Candidate, candidates, detect, is_of_photos};
 /// choice is a person's.
 pub fn meant_by(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Vec<Candidate>> {
     let meant = paths.iter().map(|path| {
-        let are_theirs = || paths.len() > 1 && is_of_photos(path);
-        if !path.is_dir() || detect(path).is_ok() || are_theirs() {
+        if !path.is_dir() || detect(path).is_ok() || is_of_their_photos(path, paths) {
             return Ok(path.clone());
         }
         let mut found = candidates(path);
@@ -25,6 +24,24 @@ pub fn meant_by(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Vec<Candidate>> {
         }
     });
     meant.collect()
+}
+
+/// Whether a folder that was named with others is that of their photos: photos lie in it, or, beside a flight, in the folders right
+/// below it, and nothing else does.
+pub(crate) fn is_of_their_photos(folder: &Path, named: &[PathBuf]) -> bool {
+    let is_flight = |path: &PathBuf| match detect(path) {
+        Ok(Kind::Flight(_)) => true,
+        Ok(Kind::Reconstruction(package, _)) => package != Package::Photos,
+        _ => false,
+    };
+    let is_above_photos = || {
+        let found = candidates(folder);
+        let is_one = |one: &Candidate| {
+            one.package == Some(Package::Photos) && one.path.parent() == Some(folder)
+        };
+        !found.is_empty() && found.iter().all(is_one)
+    };
+    named.len() > 1 && (is_of_photos(folder) || is_above_photos() && named.iter().any(is_flight))
 }
 
 #[cfg(test)]
@@ -53,5 +70,25 @@ mod tests {
         let dropped = Dropped::sort(&both).unwrap();
         assert_eq!(dropped.flight, Some(flight));
         assert_eq!(dropped.options.photos, Some(root));
+    }
+
+    /// Photos in two folders are a choice of two flights, and beside a flight its photos.
+    #[test]
+    fn folders_of_photos_beside_a_flight_are_its_photos() {
+        let folder = tempfile::tempdir().unwrap();
+        let (flight, cloud) = (folder.path().join("f.toml"), folder.path().join("c.ply"));
+        fs::write(&flight, "format = 1\n").unwrap();
+        fs::write(&cloud, "ply\n").unwrap();
+        let photos = folder.path().join("Fotos");
+        for within in ["sub1", "sub2"] {
+            fs::create_dir_all(photos.join(within)).unwrap();
+            fs::write(photos.join(within).join("1.jpg"), "x").unwrap();
+        }
+        let both = [flight, photos.clone()];
+        assert_eq!(meant_by(&both).unwrap(), both);
+        let dropped = Dropped::sort(&both).unwrap();
+        assert_eq!(dropped.options.photos.as_ref(), Some(&photos));
+        assert_eq!(meant_by(&[cloud, photos.clone()]).unwrap_err().len(), 2);
+        assert_eq!(meant_by(&[photos]).unwrap_err().len(), 2);
     }
 }

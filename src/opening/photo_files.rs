@@ -109,7 +109,10 @@ pub(crate) fn set_sizes_from_files(
         sizes.push(size);
         if let (None, Some(photo)) = (size, first) {
             let why = why.unwrap_or_else(|| match folder.folder {
-                Some(folder) => format!("there is no such image file in {}", folder.display()),
+                Some(path) => match folder.in_several(&[photo.as_str()]) {
+                    Some(several) => several.what,
+                    None => format!("there is no such image file in {}", path.display()),
+                },
                 None => "there is no such image file".to_owned(),
             });
             left_out.push((photo, why));
@@ -184,6 +187,8 @@ pub(crate) fn fit_cameras_to_files(
             sizes.len(),
             first_names(&missing)
         ));
+        let several = folder.in_several(&missing);
+        warnings.extend(several.map(|fault| format!("{}: {fault}", path.display())));
     }
     for (index, camera) in cameras.iter_mut().enumerate() {
         let of_camera = photos

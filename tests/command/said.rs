@@ -64,6 +64,25 @@ fn photos_without_a_pose_are_named() {
     assert!(!stdout_of(&["check", &all]).contains("have no pose"));
 }
 
+/// Which photos are meant by a reason that several have can be read.
+#[test]
+fn photos_that_share_a_reason_are_all_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let flight = copied(folder.path(), str::to_owned, str::to_owned);
+    for number in [2, 4, 6, 8] {
+        let photo = folder.path().join(format!("photos/IMG_000{number}.jpg"));
+        fs::remove_file(photo).expect("removed");
+    }
+    let said = stdout_of(&["check", &flight]);
+    let four = "4 photos (IMG_0002.jpg, IMG_0004.jpg, IMG_0006.jpg, IMG_0008.jpg): check: the photo file is missing";
+    assert!(said.contains(four), "{said}");
+    let rows = said.lines().filter(|line| line.ends_with("; see below"));
+    let names: Vec<&str> = rows.filter_map(|row| row.split("  ").next()).collect();
+    // The last one lies over a hole.
+    let expected = [2, 4, 6, 8, 9].map(|number| format!("IMG_000{number}.jpg"));
+    assert_eq!(names, expected, "{said}");
+}
+
 #[test]
 fn a_pile_of_a_millimetre_is_not_trusted() {
     let folder = tempfile::tempdir().expect("a folder");

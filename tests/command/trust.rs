@@ -172,7 +172,13 @@ fn a_photo_folder_that_cannot_be_is_refused() {
     let model = opensfm(folder.path(), (40, 30), "c");
     let other = folder.path().join("other");
     image(&other.join("IMG_1.jpg"), (40, 30));
-    image(&folder.path().join("card/north/DJI_0025.JPG"), (40, 30));
+    image(&folder.path().join("card/north/IMG_2.jpg"), (40, 30));
+    for within in ["a", "b"] {
+        image(
+            &folder.path().join("twice").join(within).join(PHOTOS[0]),
+            (40, 30),
+        );
+    }
     let file = folder.path().join("file.txt");
     fs::write(&file, "x").expect("written");
     let flight = |photos: &str| {
@@ -195,7 +201,7 @@ fn a_photo_folder_that_cannot_be_is_refused() {
         ),
         (
             "card",
-            "it holds no images itself (but folders within it: north), and none of the flight's 3 photos (DJI_0025.JPG, DJI_0026.JPG, ...)",
+            "it holds no images itself, and in the folders within it (north) none of the flight's 3 photos (DJI_0025.JPG, DJI_0026.JPG, ...)",
         ),
     ] {
         let path = folder.path().join(name);
@@ -212,6 +218,53 @@ fn a_photo_folder_that_cannot_be_is_refused() {
                 )
             );
         }
+    }
+    let twice = folder.path().join("twice");
+    let (_, err) = run(
+        1,
+        &["scales", text_of(&model), "--photo-folder", text_of(&twice)],
+    );
+    let words = "several folders within it (a, b) have files called as the flight's photos (DJI_0025.JPG), and nothing says which";
+    assert!(err.contains(words), "{err}");
+}
+
+/// Folders of an engineer's own below the one that she names: photos are found by their names there, and none whose name two of
+/// them have. Solved on images of a tenth, whose scale would be a tenth.
+#[test]
+fn photos_in_folders_within_the_named_one_are_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = opensfm(folder.path(), (40, 30), "c");
+    let named = folder.path().join("Fotos L\u{f6}ffel");
+    for (within, photo) in [("sub1", 0), ("sub2", 1), ("sub1", 2), ("sub2", 2)] {
+        image(&named.join(within).join(PHOTOS[photo]), (400, 300));
+    }
+    let arguments = [
+        "scales",
+        text_of(&model),
+        "--photo-folder",
+        text_of(&named),
+        "--unit",
+        "m",
+        "--format",
+        "json",
+    ];
+    let (json, err) = run(0, &arguments);
+    let report: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    let photos = report["photos"].as_array().expect("photos");
+    for photo in photos {
+        let top = crate::common::scale(photo, "top").expect("a scale");
+        assert!((top / (FOCAL * 400.0 / HEIGHT) - 1.0).abs() < 1e-9, "{top}");
+    }
+    let missing =
+        |photo: &serde_json::Value| photo.to_string().contains("the photo file is missing");
+    let missing: Vec<bool> = photos.iter().map(missing).collect();
+    assert_eq!(missing, [false, false, true], "{json}");
+    for words in [
+        "1 of 3 image files are missing (DJI_0027.JPG)",
+        "several folders within it (sub1, sub2) have files called as the flight's photos (DJI_0027.JPG), and nothing says which of them are meant; name the folder",
+        "(sub1/DJI_0027.JPG)",
+    ] {
+        assert!(err.contains(words), "{err}");
     }
 }
 
@@ -529,6 +582,12 @@ fn a_photo_from_under_the_surface_is_not_trusted() {
     let verdicts: Vec<&serde_json::Value> =
         features.map(|one| &one["properties"]["verdict"]).collect();
     assert_eq!(verdicts, ["trust", "check"]);
+    // A map says why, in the words of the table.
+    let features = footprints["features"].as_array().expect("features").iter();
+    let reasons: Vec<&str> = features
+        .map(|one| one["properties"]["reasons"].as_str().expect("reasons"))
+        .collect();
+    assert_eq!(reasons, ["", words.as_str()]);
     let to = folder.path().join("trusted");
     let trusted = [
         "export",

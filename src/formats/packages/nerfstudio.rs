@@ -13,8 +13,8 @@
 //! ```
 //!
 //! - Intrinsics of a frame stand before those of the file. fl_y is fl_x, cx and cy the middle where they
-//!   are left out. camera_angle_x is the horizontal field of view in radians, where there is no fl_x.
-//!   Sizes that are left out are the photos' own.
+//!   are left out. camera_angle_x is the horizontal field of view in radians, where there is no fl_x; beside one that it shows to be
+//!   in millimetres the file is refused. Sizes that are left out are the photos' own.
 //! - cx and cy count from the top-left corner, as COLMAP's do, which most of these files come from.
 //! - transform_matrix is `world_from_camera`, row-major, with OpenGL's camera axes: x right, y UP, z BACK.
 //! - camera_model: OPENCV, PINHOLE, SIMPLE_PINHOLE, SIMPLE_RADIAL, RADIAL or none is brown k1 k2 p1 p2 k3;
@@ -41,6 +41,10 @@ use crate::packages::reconstruction::{PosedPhoto, Project, Reconstruction, Sizes
 use crate::photos::photo_size;
 use crate::poses::rounded_rotation::{from_row_major, rounded_rotation};
 use crate::text::json::parse;
+
+/// The widest field of view that a lens without a fish-eye's projection is believed, degrees: the widest that are made see about 130
+/// across their longer side.
+const WIDEST: f64 = 150.0;
 
 /// The `transforms.json` of a folder.
 pub(crate) fn transforms_of_folder(folder: &Path) -> Option<PathBuf> {
@@ -269,6 +273,16 @@ fn pose(matrix: &[Vec<f64>]) -> Result<Pose, String> {
     })
 }
 
+/// How much of the world a pinhole sees across this many pixels, radians.
+fn field_of_view(pixels: f64, focal: f64) -> f64 {
+    2.0 * (pixels / 2.0 / focal).atan()
+}
+
+/// Whether an angle is that of another lens.
+fn is_another(field_of_view: f64, angle: f64) -> bool {
+    (field_of_view - angle).abs() > 0.05 * field_of_view
+}
+
 impl RawIntrinsics {
     /// These, and the file's where they say nothing.
     fn or(self, file: &Self) -> Self {
@@ -330,20 +344,44 @@ impl RawIntrinsics {
     }
 
     /// What to say where the focal length and the angle beside it, which is only for information, are
-    /// of different lenses: often a focal length in millimetres or of another image size.
+    /// of different lenses: often a focal length of another image size. One in millimetres is refused by that angle; without it,
+    /// it is named.
     fn contradiction(&self, camera: &Camera) -> Option<String> {
-        let angle = self.camera_angle_x.filter(|_| self.fl_x.is_some())?;
-        let own = 2.0 * (f64::from(camera.width) / 2.0 / camera.fx).atan();
-        let apart = (own - angle).abs() > 0.05 * own;
-        apart.then(|| {
-            format!(
-                "camera '{}': fl_x {} px is a field of view of {:.1} degrees, but camera_angle_x says {:.1}; fl_x is taken",
-                camera.name,
-                camera.fx,
+        let fl_x = self.fl_x?;
+        let own = field_of_view(f64::from(camera.width), fl_x);
+        let seen = format!(
+            "camera '{}': fl_x {fl_x} px is a field of view of {:.1} degrees",
+            camera.name,
+            own.to_degrees()
+        );
+        match self.camera_angle_x {
+            Some(angle) => is_another(own, angle).then(|| {
+                let angle = angle.to_degrees();
+                format!("{seen}, but camera_angle_x says {angle:.1}; fl_x is taken")
+            }),
+            None => self
+                .is_too_wide(own)
+                .then(|| format!("{seen}; if it is in millimetres, no scale is right")),
+        }
+    }
+
+    /// Refuses a focal length that cannot be in pixels, as the angle beside it tells.
+    fn check_focal(&self, width: f64, fx: f64) -> Result<(), String> {
+        let own = field_of_view(width, fx);
+        let angle = self.camera_angle_x.filter(|_| self.fl_x.is_some());
+        match angle.filter(|angle| self.is_too_wide(own) && is_another(own, *angle)) {
+            Some(angle) => Err(format!(
+                "fl_x {fx} px is a field of view of {:.1} degrees, but camera_angle_x says {:.1}: fl_x counts in pixels, and this looks like millimetres",
                 own.to_degrees(),
                 angle.to_degrees()
-            )
-        })
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether no such lens has this field of view, radians.
+    fn is_too_wide(&self, field_of_view: f64) -> bool {
+        self.is_fisheye() == Some(false) && field_of_view.to_degrees() > WIDEST
     }
 
     fn camera(&self, name: String) -> Result<Camera, String> {
@@ -367,6 +405,7 @@ impl RawIntrinsics {
             (None, Some(angle)) => of_angle(w, angle)?,
             (None, None) => return Err("it has neither fl_x nor camera_angle_x".to_owned()),
         };
+        self.check_focal(w, fx)?;
         let fy = match (self.fl_y, self.camera_angle_y) {
             (Some(fy), _) => fy,
             // Beside a focal length the angle is only for information.
@@ -529,6 +568,33 @@ mod tests {
         };
         assert!(
             warning.contains("90.0 degrees, but camera_angle_x says 60.0"),
+            "{warning}"
+        );
+    }
+
+    /// 1500 px across 49.3 degrees are 1634 px of focal length: 35.7 is in millimetres, on a sensor of 32.8 mm. Fish-eyes see that much.
+    #[test]
+    fn a_focal_length_in_millimetres_is_refused() {
+        let millimetres = r#""fl_x": 35.7, "w": 1500, "h": 1000"#;
+        let angle = format!(
+            r#"{millimetres}, "camera_angle_x": {}"#,
+            49.3_f64.to_radians()
+        );
+        let fault = camera_of(&angle, "").unwrap_err();
+        for words in ["field of view of 174.5 degrees", "says 49.3", "millimetres"] {
+            assert!(fault.what.contains(words), "{fault}");
+        }
+        let right = angle.replace("35.7", "1634.2");
+        assert!(camera_of(&right, "").is_ok());
+        assert!(camera_of(&format!(r#"{angle}, "is_fisheye": true"#), "").is_ok());
+        // Nothing contradicts it, and it is said.
+        let json = transforms(millimetres, "");
+        let (found, _) = read(json.as_bytes(), |_| None).unwrap();
+        let [warning] = &found.warnings[..] else {
+            panic!("{:?}", found.warnings);
+        };
+        assert!(
+            warning.contains("174.5 degrees; if it is in millimetres"),
             "{warning}"
         );
     }

@@ -1,12 +1,15 @@
 //! The folder of photos: which of its files are images, and which is the file of a photo.
 
-use std::collections::HashMap;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use super::image_names::{is_image, readable};
 use super::photo_size;
-use super::photos_below::{PhotosBelow, folders_of_photos};
+use super::photos_below::{
+    LOOKED_THROUGH, PhotosBelow, folders_of_photos, images_below, is_cameras,
+};
 use crate::fault::{Fault, first_names};
 use crate::files::{last_segment, open_file, same_name, unreadable_folder};
 use crate::packages::reconstruction::Reconstruction;
@@ -18,39 +21,50 @@ const SHOWN: usize = 2;
 pub struct PhotoFolder<'a> {
     /// Where they are, if a folder is known.
     pub folder: Option<&'a Path>,
-    /// Its files by the keys of their names (`same_name`): those directly in it, or, where no image is among them, those in the folders
-    /// that a camera made in it. Of two that differ in nothing else `None`: which is meant is not for us to say.
-    in_any_case: HashMap<String, Option<PathBuf>>,
+    /// Its files by the keys of their names (`same_name`): those directly in it, or, where no image is among them, those in folders
+    /// in it, too. Which of several is meant is not for us to say.
+    files: HashMap<String, Vec<PathBuf>>,
+    /// The names of those folders, by their keys.
+    within: BTreeMap<String, String>,
 }
 
 impl<'a> PhotoFolder<'a> {
-    /// The files of `folder`.
+    /// The files of a folder that a package leads to; where it has no images itself, those in the folders that a camera made in it.
+    /// Others may be of other flights, whose photos have the same names.
     pub fn new(folder: Option<&'a Path>) -> Self {
-        let mut in_any_case = HashMap::new();
-        let mut add = |path: PathBuf| {
-            let key = same_name::key(&path.file_name().unwrap_or_default().to_string_lossy());
-            let is_photo = is_image(&key);
-            let known = in_any_case.entry(key);
-            known
-                .and_modify(|known| *known = None)
-                .or_insert(Some(path));
-            is_photo
-        };
+        Self::with(folder, |card| {
+            let below = PhotosBelow::read(card).unwrap_or_default();
+            below.photos.into_iter().map(|(_, path)| path).collect()
+        })
+    }
+
+    /// The files of a folder that somebody named for the photos; where it has no images itself, those in all folders right below it.
+    pub fn named(folder: Option<&'a Path>) -> Self {
+        Self::with(folder, |folder| images_below(folder, LOOKED_THROUGH))
+    }
+
+    fn with(folder: Option<&'a Path>, below: impl FnOnce(&Path) -> Vec<PathBuf>) -> Self {
         let entries = folder.and_then(|folder| std::fs::read_dir(folder).ok());
-        let mut has_photos = false;
-        for entry in entries.into_iter().flatten().flatten() {
-            has_photos |= add(entry.path());
-        }
-        if let Some(card) = folder.filter(|_| !has_photos)
-            && let Ok(below) = PhotosBelow::read(card)
+        let entries = entries.into_iter().flatten().flatten();
+        let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+        let mut within = BTreeMap::new();
+        if let Some(folder) = folder
+            && !paths.iter().any(|path| is_image(&name_of(path)))
         {
-            below.photos.into_iter().for_each(|(_, path)| {
-                add(path);
-            });
+            let found = below(folder);
+            let names = found.iter().map(|path| folder_of(path));
+            within.extend(names.map(|name| (same_name::key(&name), name)));
+            paths.extend(found);
+        }
+        let mut files: HashMap<String, Vec<PathBuf>> = HashMap::new();
+        for path in paths {
+            let key = same_name::key(&name_of(&path));
+            files.entry(key).or_default().push(path);
         }
         Self {
             folder,
-            in_any_case,
+            files,
+            within,
         }
     }
 
@@ -67,21 +81,71 @@ impl<'a> PhotoFolder<'a> {
             .chain(same_name::other_spellings(photo))
             .chain(std::iter::once(last.to_owned()))
             .map(|name| folder.join(name));
+        let found = as_named.find(|path| path.is_file());
+        found.or_else(|| match self.called(photo)[..] {
+            [only] => Some(only.to_owned()),
+            _ => None,
+        })
+    }
+
+    /// The files that are called as a photo is: those of the first way to write the last part of its name that any has.
+    fn called(&self, photo: &str) -> Vec<&Path> {
+        let last = last_segment(photo);
         let first_ending = last.rsplit_once('.').map(|(stem, _)| stem);
         let bare = first_ending.filter(|stem| is_image(stem));
         // Lists of poses and labels leave endings out, and programs put theirs behind the photo's own.
         let longer = readable().map(|ending| format!("{last}.{ending}"));
-        let in_any_case = |name: String| self.in_any_case.get(&same_name::key(&name))?.clone();
-        as_named
-            .find(|path| path.is_file())
-            .or_else(|| {
-                let mut found = std::iter::once(last.to_owned())
-                    .chain(longer)
-                    .chain(spelt_otherwise(last))
-                    .filter_map(in_any_case);
-                found.find(|path| path.is_file())
-            })
-            .or_else(|| in_any_case(bare?.to_owned()).filter(|path| path.is_file()))
+        let names = std::iter::once(last.to_owned())
+            .chain(longer)
+            .chain(spelt_otherwise(last))
+            .chain(bare.map(str::to_owned));
+        let files = |name: String| -> Vec<&Path> {
+            let files = self.files.get(&same_name::key(&name));
+            let files = files.into_iter().flatten().map(PathBuf::as_path);
+            let files = files.filter(|path| self.may_be(path, photo));
+            files.filter(|path| path.is_file()).collect()
+        };
+        let mut files = names.map(files).filter(|files| !files.is_empty());
+        files.next().unwrap_or_default()
+    }
+
+    /// Whether a file in a folder within may be a photo's. A camera counts anew in each of its folders: where the photo's name says
+    /// one that is there, or one of a camera's, the same name in another one is another photo's.
+    fn may_be(&self, path: &Path, photo: &str) -> bool {
+        let said = photo.rsplit(['/', '\\']).nth(1).unwrap_or_default();
+        if self.within.is_empty() || said.is_empty() {
+            return true;
+        }
+        let own = folder_of(path);
+        let key = same_name::key(said);
+        let is_another = self.within.contains_key(&key) || is_cameras(said) && is_cameras(&own);
+        key == same_name::key(&own) || !is_another
+    }
+
+    /// What there is to say of photos whose names are in several folders within it, so that none of their files is taken; `None`
+    /// where there are no such photos.
+    pub fn in_several(&self, photos: &[&str]) -> Option<Fault> {
+        let mut names = Vec::new();
+        let mut folders = BTreeSet::new();
+        for photo in photos {
+            let its: BTreeSet<String> = self.called(photo).into_iter().map(folder_of).collect();
+            if its.len() > 1 && self.find(photo).is_none() {
+                names.push(*photo);
+                folders.extend(its);
+            }
+        }
+        let last = last_segment(names.first()?);
+        let example = format!("{}/{last}", folders.first()?);
+        Some(Fault::new(
+            format!(
+                "several folders within it ({}) have files called as the flight's photos ({}), and nothing says which of them are meant",
+                first_names(&folders),
+                first_names(&names)
+            ),
+            format!(
+                "name the folder of the photos, or write it before their names where their poses are ({example})"
+            ),
+        ))
     }
 
     /// Refuses a folder that somebody named for the photos and that cannot be theirs.
@@ -102,19 +166,26 @@ impl<'a> PhotoFolder<'a> {
         if photos.iter().any(|photo| self.find(photo).is_some()) {
             return Ok(());
         }
-        let mut there: Vec<&str> = self.in_any_case.keys().map(String::as_str).collect();
+        if let Some(fault) = self.in_several(photos) {
+            return Err(fault);
+        }
+        let mut there: Vec<&str> = self.files.keys().map(String::as_str).collect();
         there.retain(|name| is_image(name));
         there.sort_unstable();
         let images = there.len();
         there.truncate(SHOWN);
-        let within = folders_of_photos(folder);
-        let there = match (images, within.is_empty()) {
-            (0, true) => "no images, and so".to_owned(),
-            (0, false) => format!(
-                "no images itself (but folders within it: {}), and",
-                first_names(&within)
+        let not_looked_into = folders_of_photos(folder);
+        let there = match (images, self.within.is_empty(), not_looked_into.is_empty()) {
+            (_, false, _) => format!(
+                "no images itself, and in the folders within it ({})",
+                first_names(self.within.values())
             ),
-            (n, _) => format!("{n} images ({}, ...), but", there.join(", ")),
+            (0, _, true) => "no images, and so".to_owned(),
+            (0, _, false) => format!(
+                "no images itself (but folders within it: {}), and",
+                first_names(&not_looked_into)
+            ),
+            (n, ..) => format!("{n} images ({}, ...), but", there.join(", ")),
         };
         refuse(format!(
             "it holds {there} none of the flight's {} photos ({}, ...)",
@@ -132,6 +203,16 @@ impl<'a> PhotoFolder<'a> {
     pub fn size_of(&self, photo: &str) -> Option<Result<(u32, u32), Fault>> {
         self.find(photo).map(|path| size_of_file(&path))
     }
+}
+
+/// The name of a file.
+fn name_of(path: &Path) -> Cow<'_, str> {
+    path.file_name().unwrap_or_default().to_string_lossy()
+}
+
+/// The name of the folder that a file lies in.
+fn folder_of(path: &Path) -> String {
+    name_of(path.parent().unwrap_or(Path::new(""))).into_owned()
 }
 
 /// The name with the other spelling of its ending. A file of another kind may be another photo: of a thermal camera beside it.
@@ -218,6 +299,52 @@ mod tests {
             assert_eq!(fs::read_to_string(path).unwrap(), found, "{asked}");
         }
         assert_eq!(files.find("Boschung 1.JPG"), None);
+    }
+
+    /// Folders of an engineer's own: the photos of a folder that is named lie right below it. A package's may hold other flights'.
+    #[test]
+    fn a_named_folder_has_the_photos_in_its_folders() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in [
+            "sub1/IMG_0001.JPG",
+            "sub1/IMG_0003.jpg",
+            "sub2/IMG_0002.jpg",
+            "sub2/IMG_0003.jpg",
+            "sub2/IMG_0003.jpeg",
+            "100MEDIA/DJI_0500.JPG",
+            "sub2/deeper/IMG_0004.jpg",
+        ] {
+            let path = folder.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, "a photo").unwrap();
+        }
+        let named = PhotoFolder::named(Some(folder.path()));
+        for (photo, file) in [
+            ("IMG_0001.jpg", Some("sub1/IMG_0001.JPG")),
+            ("img_0002", Some("sub2/IMG_0002.jpg")),
+            // In both; the folder before it tells, as other systems write it, too.
+            ("IMG_0003.jpg", None),
+            ("sub2/IMG_0003.jpg", Some("sub2/IMG_0003.jpg")),
+            (r"D:\flug\SUB1\IMG_0003.jpg", Some("sub1/IMG_0003.jpg")),
+            // Not there, whatever the other folder has.
+            ("sub1/IMG_0002.jpg", None),
+            ("101MEDIA/DJI_0500.JPG", None),
+            // A folder that nothing is known of does not tell.
+            ("photos/IMG_0001.jpg", Some("sub1/IMG_0001.JPG")),
+            ("photos/DJI_0500.JPG", Some("100MEDIA/DJI_0500.JPG")),
+            ("IMG_0004.jpg", None),
+        ] {
+            let expected = file.map(|file| folder.path().join(file));
+            assert_eq!(named.find(photo), expected, "{photo}");
+        }
+        assert!(named.check(&["IMG_0001.jpg", "IMG_0003.jpg"]).is_ok());
+        let fault = named.check(&["IMG_0003.jpg"]).unwrap_err();
+        let words = "several folders within it (sub1, sub2) have files called as the flight's photos (IMG_0003.jpg)";
+        assert!(fault.what.starts_with(words), "{fault}");
+        assert!(fault.remedy.contains("(sub1/IMG_0003.jpg)"), "{fault}");
+        assert_eq!(named.in_several(&["IMG_0001.jpg", "IMG_0004.jpg"]), None);
+        let found = PhotoFolder::new(Some(folder.path()));
+        assert_eq!(found.find("IMG_0001.jpg"), None);
     }
 
     /// A memory card's DCIM, of which a package kept the names of files alone: what two of its folders have is nobody's.

@@ -8,7 +8,11 @@ use std::path::{Path, PathBuf};
 
 use crate::fault::Fault;
 use crate::files::{FileError, unreadable_folder};
-use crate::photos::image_names::{Ending, is_ending};
+use crate::photos::image_names::{Ending, is_ending, is_image};
+
+/// How many files in the folders of a folder are looked through for a flight's photos: a flight has some thousand, and a disk with
+/// the flights of a year is no flight's folder.
+pub(crate) const LOOKED_THROUGH: usize = 20_000;
 
 /// What a folder has of photos.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -62,6 +66,7 @@ fn of_other_endings(folder: &Path, photos: &[(String, PathBuf)]) -> Vec<String> 
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         is_ending(&ending, Ending::Unread)
             && !is_photo(path)
+            && !is_companion(path)
             && !known.contains(&stem(path))
             && path.is_file()
     });
@@ -83,12 +88,19 @@ pub(crate) fn is_photo(path: &Path) -> bool {
     is_ending(&ending, Ending::Photo) && path.is_file()
 }
 
+/// Whether macOS put a file beside another one, on a card or a server that cannot keep what it knows of that: of the same name behind
+/// "._", and no photo (AppleDouble, RFC 1740).
+fn is_companion(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default();
+    name.to_string_lossy().starts_with("._")
+}
+
 /// Whether a folder has photos in it.
 pub(crate) fn has_photos(folder: &Path) -> bool {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries
         .map(|entry| entry.path())
-        .any(|path| is_photo(&path))
+        .any(|path| is_photo(&path) && !is_companion(&path))
 }
 
 /// The photos that lie in a folder itself, by name.
@@ -109,7 +121,7 @@ pub(crate) fn photos_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
     let mut photos = Vec::new();
     for entry in fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
-        if is_photo(&path) {
+        if is_photo(&path) && !is_companion(&path) {
             photos.push(path);
         }
     }
@@ -128,9 +140,35 @@ pub(crate) fn folders_of_photos(folder: &Path) -> Vec<String> {
     names
 }
 
+/// The images in the folders right below a folder, by their paths; folders that are hidden (of thumbnails, of what was deleted) are
+/// passed over. None at all where there are more than `most` files: of the rest one could be called as another one is.
+pub(crate) fn images_below(folder: &Path, most: usize) -> Vec<PathBuf> {
+    let entries = |folder: &Path| fs::read_dir(folder).into_iter().flatten().flatten();
+    let name = |entry: &fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
+    let within = entries(folder).filter(|entry| !name(entry).starts_with('.'));
+    let within = within
+        .map(|entry| entry.path())
+        .filter(|path| path.is_dir());
+    let mut images = Vec::new();
+    let mut seen = 0;
+    for folder in within {
+        for entry in entries(&folder) {
+            seen += 1;
+            if seen > most {
+                return Vec::new();
+            }
+            if is_image(&name(&entry)) {
+                images.push(entry.path());
+            }
+        }
+    }
+    images.sort();
+    images
+}
+
 /// Whether a folder is called as cameras call theirs: by three digits and five letters (the rule of memory cards, DCF 2.0:
 /// 100MEDIA), or as DJI's drones call those of a mission.
-fn is_cameras(name: &str) -> bool {
+pub(crate) fn is_cameras(name: &str) -> bool {
     let by_rule = name.len() == 8
         && name.bytes().take(3).all(|byte| byte.is_ascii_digit())
         && name
@@ -142,6 +180,28 @@ fn is_cameras(name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn images_of_all_folders_below_or_none() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in [
+            "b/2.JPG",
+            "a/1.tif",
+            "a/notes.txt",
+            ".thumbnails/3.jpg",
+            "a/deeper/4.jpg",
+            "own.jpg",
+        ] {
+            let path = folder.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, "").unwrap();
+        }
+        let expected = ["a/1.tif", "b/2.JPG"].map(|name| folder.path().join(name));
+        // Two images, a text and a folder.
+        assert_eq!(images_below(folder.path(), 4), expected);
+        assert!(images_below(folder.path(), 3).is_empty());
+        assert!(images_below(&folder.path().join("none"), 4).is_empty());
+    }
 
     #[test]
     fn folders_that_a_camera_made_are_one() {
@@ -167,12 +227,16 @@ mod tests {
         assert_eq!(found(), pair(all, ""));
         // What else lies on a card is named.
         add("labels", "a.png");
+        add("labels", "._a.png");
+        add("of macOS", "._a.png");
         assert_eq!(found(), pair(all, "labels"));
         let others = "100MEDIA 101MEDIA DJI_202605011200_001 labels";
         add("", "own.DNG");
         add("", "ortho.TIF");
         add("", "IMG_1.HEIC");
         add("", "own.jpg");
+        add("", "._own.jpg");
+        add("", "._IMG_1.HEIC");
         assert_eq!(found(), pair("own.jpg", others));
         let file = PhotosBelow::read(&folder.path().join("own.jpg")).unwrap_err();
         assert!(file.to_string().contains("a folder of photos is needed"));

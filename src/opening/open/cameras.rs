@@ -104,7 +104,7 @@ pub(super) fn take_sizes(
             }
         }
     } else {
-        let folder = PhotoFolder::new(source.photo_folder.as_deref());
+        let folder = photo_folder(source.photo_folder.as_deref(), source.photo_folder_is_named);
         let mut said = Vec::new();
         set_sizes_from_files(reconstruction, &folder, given, &mut said).map_err(at)?;
         source.warn(path, &said);
@@ -112,12 +112,20 @@ pub(super) fn take_sizes(
     Ok(())
 }
 
+/// The folder of the photos. One that somebody named for them is looked through with the folders in it.
+fn photo_folder(path: Option<&Path>, is_named: bool) -> PhotoFolder<'_> {
+    match is_named {
+        true => PhotoFolder::named(path),
+        false => PhotoFolder::new(path),
+    }
+}
+
 /// Finds the photo files, and scales each camera to the size of its own.
 ///
 /// # Errors
 /// Where the folder that somebody named cannot be the photos'.
 pub(super) fn fit(source: &mut Source) -> Result<Vec<PhotoFile>, FileError> {
-    let folder = PhotoFolder::new(source.photo_folder.as_deref());
+    let folder = photo_folder(source.photo_folder.as_deref(), source.photo_folder_is_named);
     if let Some(path) = &source.photo_folder
         && source.photo_folder_is_named
     {

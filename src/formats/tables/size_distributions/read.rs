@@ -17,7 +17,7 @@ use super::size_unit::SizeUnit;
 use super::unit_above::Above;
 use crate::fault::Fault;
 use crate::fragmentation::Labels;
-use crate::tables::table::{OR_LEAVE_OUT, Row, Table, last_digit, number_and_unit};
+use crate::tables::table::{OR_LEAVE_OUT, Row, Table, number_and_unit};
 use crate::text::fields::shown;
 use crate::units::LengthUnit;
 
@@ -458,7 +458,8 @@ impl Reader<'_> {
                     continue;
                 };
                 if total {
-                    sieves.total_digit = last_digit(row.cell(of.column)).unwrap_or_default();
+                    let digit = self.table.last_digit(row, of.column);
+                    sieves.total_digit = digit.unwrap_or_default();
                 }
                 let place = match (total, washed) {
                     (true, _) => &mut sieves.total,

@@ -61,7 +61,7 @@ pub(crate) fn number_and_unit(name: &str) -> Option<(f64, bool, &str)> {
 }
 
 /// What one of the last digit shown of a cell's number is: 0.1 of "12.3", 1 of "58". `None` where it is no plain number.
-pub(crate) fn last_digit(cell: &str) -> Option<f64> {
+pub(super) fn last_digit(cell: &str) -> Option<f64> {
     let (number, _) = number_text(cell);
     let (whole, decimals) = number.rsplit_once(['.', ',']).unwrap_or((&*number, ""));
     let is_digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
@@ -88,6 +88,35 @@ pub(crate) fn split_number(cell: &str) -> (&str, &str) {
         }
     }
     cell.split_at_checked(end).unwrap_or((cell, ""))
+}
+
+/// A number in which points, or commas, may part thousands, three digits each, without them, and which of both they are: "1250,5" of
+/// "1.250,5", "1234567" of "1,234,567". `None` of any other.
+pub(super) fn without_separators(number: &str) -> Option<(char, String)> {
+    let digits = number.trim_start_matches(['+', '-']);
+    let separator = digits.chars().find(|c| ['.', ','].contains(c))?;
+    let (whole, decimals) = match digits.split_once(other_sign(separator)) {
+        Some((whole, decimals)) => (whole, Some(decimals)),
+        None => (digits, None),
+    };
+    let are_digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let (first, groups) = whole.split_once(separator)?;
+    let are_thousands = are_digits(first)
+        && first.len() <= 3
+        && !first.starts_with('0')
+        && groups
+            .split(separator)
+            .all(|group| group.len() == 3 && are_digits(group))
+        && decimals.is_none_or(are_digits);
+    are_thousands.then(|| (separator, number.replace(separator, "")))
+}
+
+/// What is decimal where this parts thousands.
+pub(super) fn other_sign(separator: char) -> char {
+    match separator {
+        '.' => ',',
+        _ => '.',
+    }
 }
 
 /// Whether the one comma or point of a number may separate thousands: one to three digits in front, of
@@ -140,6 +169,28 @@ mod tests {
         assert_eq!(number_and_unit("1 200,5 mm"), Some((1200.5, true, " mm")));
         assert_eq!(number_and_unit("12 mm"), Some((12.0, false, " mm")));
         assert_eq!(number_and_unit("photo 1 200"), None);
+    }
+
+    #[test]
+    fn thousands_that_a_sign_parts() {
+        for (number, wanted) in [
+            ("1.250,0", Some(('.', "1250,0"))),
+            ("-1,250.75", Some((',', "-1250.75"))),
+            ("12.345.678", Some(('.', "12345678"))),
+            ("1.000", Some(('.', "1000"))),
+            ("1.25,0", None),
+            ("1.250,", None),
+            ("1,5.250", None),
+            ("0.250", None),
+            ("1250.000", None),
+            ("1.250,0,5", None),
+            ("1.250.50", None),
+            ("1,250e3", None),
+            ("1250", None),
+        ] {
+            let wanted = wanted.map(|(sign, text)| (sign, text.to_owned()));
+            assert_eq!(without_separators(number), wanted, "{number}");
+        }
     }
 
     #[test]

@@ -9,7 +9,8 @@
 //! - A line may end early: what is missing is empty. What stands beyond the header's columns is a
 //!   fault, because a decimal comma may have shifted it there.
 //! - Numbers may have a decimal comma where the table shows that it is one and not a thousands
-//!   separator ([`Table::number`]). Thousands may stand apart.
+//!   separator ([`Table::number`]). Thousands may stand apart, or be parted by points or commas where the
+//!   table shows that the other sign is the decimal one.
 
 mod cell_number;
 mod encoding;
@@ -20,7 +21,7 @@ use std::path::Path;
 
 use csv::StringRecord;
 
-use self::cell_number::number_text;
+use self::cell_number::{last_digit, number_text, other_sign, without_separators};
 use self::encoding::decoded;
 use self::records::{blank_records, counted_lines, separated_records, separator};
 use crate::fault::Fault;
@@ -28,7 +29,7 @@ use crate::files::{FileError, open_file};
 use crate::text::fields::shown;
 
 pub use self::cell_number::may_be_thousands;
-pub(crate) use self::cell_number::{last_digit, number_and_unit, split_number};
+pub(crate) use self::cell_number::{number_and_unit, split_number};
 
 /// Larger files are no tables that people made or looked at.
 const LARGEST: usize = 16 << 20;
@@ -45,7 +46,8 @@ pub struct Table {
     header: Vec<String>,
     header_line: u64,
     rows: Vec<Row>,
-    /// Whether some number is written with a comma, and some with a point, that can only be decimal.
+    /// Whether some number is written with a comma, and some with a point, that can only be decimal: not one of thousands, or behind
+    /// thousands that the other sign parts.
     decimal_comma: bool,
     decimal_point: bool,
     /// Of each column, whether a point in it may as well stand behind thousands: between semicolons, where no point of the
@@ -86,6 +88,9 @@ pub struct NumberRepairs {
     /// How many had thousands that stand apart; of the first the line, and as what it was read.
     apart: usize,
     first_apart: (u64, String),
+    /// The same of those whose thousands were parted by points or commas.
+    parted: usize,
+    first_parted: (u64, String),
 }
 
 impl NumberRepairs {
@@ -108,7 +113,16 @@ impl NumberRepairs {
                 numbers(self.apart)
             )
         });
-        commas.into_iter().chain(apart).collect()
+        let parted = (self.parted > 0).then(|| {
+            let (line, how) = &self.first_parted;
+            format!(
+                "points or commas between thousands are left out, for the table's decimal sign is the other one: {how} ({} {}, \
+                 first on line {line})",
+                self.parted,
+                numbers(self.parted)
+            )
+        });
+        commas.into_iter().chain(apart).chain(parted).collect()
     }
 
     /// Whether some number had a decimal comma.
@@ -130,6 +144,14 @@ impl NumberRepairs {
             self.first_apart = (line, format!("'{}' as {number}", shown(cell)));
         }
         self.apart += 1;
+    }
+
+    /// Notes a cell on this line whose thousands were parted by points or commas, and what was read.
+    fn thousands_parted(&mut self, line: u64, cell: &str, number: f64) {
+        if self.parted == 0 {
+            self.first_parted = (line, format!("'{}' as {number}", shown(cell)));
+        }
+        self.parted += 1;
     }
 }
 
@@ -351,6 +373,17 @@ impl Table {
             let what = format!("column {name}: '{}' {what}", shown(cell));
             Err(Fault::at(row.line, what, remedy))
         };
+        if let Some(whole) = self.without_thousands(number) {
+            let parsed = whole.replace(',', ".").parse::<f64>().ok();
+            let Some(parsed) = parsed.filter(|number| number.is_finite()) else {
+                return Err(self.no_number(row, column));
+            };
+            if whole.contains(',') {
+                repairs.decimal_comma(row.line);
+            }
+            repairs.thousands_parted(row.line, cell, parsed);
+            return Ok(Some((parsed, rest.trim_start())));
+        }
         let plain = "write decimals with a point, and nothing between thousands";
         let ambiguous = "may have a decimal sign or a separator of thousands";
         let parsed = match (number.matches(',').count(), number.matches('.').count()) {
@@ -379,6 +412,26 @@ impl Table {
             }
             Ok(_) => fault("is not finite", "correct it"),
             Err(_) => Err(self.no_number(row, column)),
+        }
+    }
+
+    /// A number without what parts its thousands, where the table says that the other sign is the decimal one, and this one never is.
+    fn without_thousands(&self, number: &str) -> Option<String> {
+        let (separator, whole) = without_separators(number)?;
+        let is_settled = match separator {
+            '.' => self.decimal_comma && !self.decimal_point,
+            _ => self.decimal_point && !self.decimal_comma,
+        };
+        is_settled.then_some(whole)
+    }
+
+    /// What one of the last digit shown of a cell's number is: 0.1 of "12.3", 1 of "58". `None` where it is no plain number.
+    pub(crate) fn last_digit(&self, row: &Row, column: usize) -> Option<f64> {
+        let cell = row.cell(column);
+        let (number, _) = number_text(cell);
+        match self.without_thousands(&number) {
+            Some(whole) => last_digit(&whole),
+            None => last_digit(cell),
         }
     }
 
@@ -415,6 +468,15 @@ impl Table {
             if signs[0] + signs[1] == 1 && !may_be_thousands(&number) {
                 self.decimal_comma |= signs[0] == 1;
                 self.decimal_point |= signs[1] == 1;
+            }
+            // Behind thousands: "1.250,0".
+            if signs[0] > 0
+                && signs[1] > 0
+                && let Some((separator, _)) = without_separators(&number)
+            {
+                let decimal = other_sign(separator);
+                self.decimal_comma |= decimal == ',';
+                self.decimal_point |= decimal == '.';
             }
         }
     }

@@ -74,7 +74,8 @@ fn numbers_are_what_they_can_only_be() {
     for bad in [
         "1,000",
         "1,000,000",
-        "1.000,5",
+        "1.00,5",
+        "1.000,",
         "1.2.3",
         "1 00",
         "1'0000",
@@ -99,7 +100,40 @@ fn numbers_are_what_they_can_only_be() {
     }
     // A comma and a point that both can only be decimal: neither says what 1,000 is.
     assert!(numbers("a;b\n1,5;2.5\n1,000;3\n").is_err());
-    assert!(numbers("a;b\n1,5;2\n1.000;3\n").is_err());
+    assert!(numbers("a;b\n1,5;2.5\n1.000;3\n").is_err());
+    assert!(numbers("a;b\n1,5;2.5\n1.000,5;3\n").is_err());
+}
+
+/// As Excel writes them in German and in English, where the table's decimals, or the number itself, say which sign is which.
+#[test]
+fn thousands_that_points_or_commas_part() {
+    let said_of = |how: &str| {
+        format!(
+            "points or commas between thousands are left out, for the table's decimal sign is the other one: {how}"
+        )
+    };
+    let (found, said) = numbers("a;b\n1.000;88,4\n-12.500;1\n500;2\n").unwrap();
+    assert_eq!(found, [1000.0, -12_500.0, 500.0].map(Some));
+    assert_eq!(
+        said,
+        [said_of("'1.000' as 1000 (2 numbers, first on line 2)")]
+    );
+    // A number with both signs says it of the others.
+    let (found, said) = numbers("a;b\n1.250,5;1\n1.000;1\n1.234.567;1\n1,250;1\n").unwrap();
+    assert_eq!(found, [1250.5, 1000.0, 1_234_567.0, 1.25].map(Some));
+    assert_eq!(
+        said,
+        [
+            "decimal commas are read as decimal points (2 numbers, first on line 2)".to_owned(),
+            said_of("'1.250,5' as 1250.5 (3 numbers, first on line 2)")
+        ]
+    );
+    let (found, said) = numbers("a;b\n1,250.5;1\n1,000;1\n").unwrap();
+    assert_eq!(found, [1250.5, 1000.0].map(Some));
+    assert_eq!(
+        said,
+        [said_of("'1,250.5' as 1250.5 (2 numbers, first on line 2)")]
+    );
 }
 
 #[test]

@@ -67,6 +67,33 @@ fn a_first_column_may_be_called_number_sign() {
     );
 }
 
+/// As German Excel writes them, of a table whose other numbers have decimal commas, and of masses that say it themselves.
+#[test]
+fn thousands_may_have_points_where_commas_are_decimal() {
+    let (set, said) = read(
+        "Sieböffnung [mm];Durchgang [%]\n1.000;100,0\n500;88,4\n250;60,1\n125;31,5\n31,5;11,2\n",
+    );
+    let wanted = [
+        [31.5, 11.2],
+        [125.0, 31.5],
+        [250.0, 60.1],
+        [500.0, 88.4],
+        [1000.0, 100.0],
+    ];
+    assert_eq!(set.curves[0].distribution.points(), wanted);
+    assert!(
+        said.iter()
+            .any(|said| said.contains("'1.000' as 1000 (1 number, first on line 2)")),
+        "{said:?}"
+    );
+    // 1250 of 5000 g stay on 500 mm: three quarters pass; 1250 g more on 250 mm.
+    let (set, _) = read(
+        "Sieböffnung [mm];Rückstand [g]\n500;1.250,0\n250;1.250,0\nSchale;2.500,0\nSumme;5.000\n",
+    );
+    let points = set.curves[0].distribution.points();
+    assert_eq!(points, [[250.0, 50.0], [500.0, 75.0]]);
+}
+
 /// As Excel writes them in French and Swiss, with a unit behind them or not, as sizes and as names of columns.
 #[test]
 fn thousands_may_stand_apart_everywhere() {

@@ -96,13 +96,13 @@ fn bad_points_have_a_line_and_a_remedy() {
              with a point, and nothing between thousands",
         ),
         (
-            "size_mm;passing\n10,5;50\n1.234,5;60\n",
+            "size_mm;passing\n10,5;50.5\n1.234,5;60\n",
             3,
             "column size_mm: '1.234,5' has separators of thousands; write decimals with a point, and \
              nothing between thousands",
         ),
         (
-            "size_mm;passing\n10,5;50\n1.000;60\n",
+            "size_mm;passing\n10,5;50.5\n1.000;60\n",
             3,
             "column size_mm: '1.000' may have a decimal sign or a separator of thousands; write decimals \
              with a point, and nothing between thousands",
