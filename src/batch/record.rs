@@ -218,7 +218,8 @@ impl Record {
 
 /// Takes away what is in the folder of a flight's results and was not written now: results that earlier runs wrote for
 /// steps or photos that are not there any more. `before` are those that are known from the record; others are known by
-/// their marks. Files of others stay.
+/// their marks. Files of others stay. Returns how many were taken away, by the file or the folder (with a slash) beside the record that
+/// they were or lay in; the word that the flight failed does not count.
 ///
 /// # Errors
 /// Where the folder cannot be listed, or a file not removed.
@@ -226,9 +227,10 @@ pub fn remove_what_is_left(
     to: &Path,
     written: &[PathBuf],
     before: &BTreeMap<String, String>,
-) -> Result<(), FileError> {
+) -> Result<BTreeMap<String, usize>, FileError> {
     let place = Place::of(to)?;
     let written = place.below(written);
+    let mut taken_away = BTreeMap::new();
     for (name, path) in files_below(&place.to)? {
         let is_result = || {
             let bytes = files::read_bytes(&path).unwrap_or_default();
@@ -237,6 +239,10 @@ pub fn remove_what_is_left(
         let stays = name == NAME || written.contains(&name);
         if !stays && is_result() {
             remove(&path)?;
+            if name != FAILED {
+                let kind = name.split_inclusive('/').next().unwrap_or(&name);
+                *taken_away.entry(kind.to_owned()).or_insert(0) += 1;
+            }
             // Folders that are empty now go, too; one that is not, stays.
             let mut folder = path.parent();
             while let Some(empty) = folder.filter(|folder| *folder != place.to) {
@@ -247,7 +253,7 @@ pub fn remove_what_is_left(
             }
         }
     }
-    Ok(())
+    Ok(taken_away)
 }
 
 /// Says in the folder of a flight's results, where there is one, that the flight failed: what stands there may be of files
@@ -548,7 +554,10 @@ mod tests {
             fs::write(to.join(name), text).unwrap();
         }
         remove_unfinished_below(to).unwrap();
-        remove_what_is_left(to, &[to.join("scales.csv")], &before).unwrap();
+        write_failed(to, "it failed").unwrap();
+        let taken_away = remove_what_is_left(to, &[to.join("scales.csv")], &before).unwrap();
+        let kinds: Vec<(&str, usize)> = taken_away.iter().map(|(k, n)| (k.as_str(), *n)).collect();
+        assert_eq!(kinds, [("maps/", 1), ("old/", 1)]);
         let names: Vec<String> = files_below(to)
             .unwrap()
             .into_iter()

@@ -1,6 +1,7 @@
 //! What the process of one flight is told, one line of JSON on its standard input, and what it says, lines of JSON on
 //! its standard output.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
@@ -51,4 +52,7 @@ pub struct FlightDone {
     pub findings: Option<FlightFindings>,
     /// Why it, or a step of it, failed: one line.
     pub error: Option<String>,
+    /// How many results of earlier runs were taken away, by the file or folder that they were or lay in.
+    #[serde(default)]
+    pub taken_away: BTreeMap<String, usize>,
 }

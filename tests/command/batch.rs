@@ -213,6 +213,15 @@ fn what_is_done_is_not_done_again() {
     fs::write(root.join("out/a/notes.txt"), "mine").expect("written");
     let output = batch(root, &["season", "--to", "out", "--steps", "check"]);
     assert_eq!(said(&output), all(&[("a", "done"), ("b", "done")]));
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    let taken_away: Vec<&str> = told
+        .lines()
+        .filter(|line| line.starts_with("taken away: "))
+        .collect();
+    let of_both = |name: &str| {
+        format!("taken away: {name} of 2 flights, which an earlier run wrote and this one does not")
+    };
+    assert_eq!(taken_away, ["scales.csv", "scales.json"].map(of_both));
     let names: Vec<PathBuf> = tree(&root.join("out/a")).into_keys().collect();
     assert_eq!(
         names,

@@ -282,6 +282,20 @@ fn what_no_drone_flies_is_refused_first() {
     );
 }
 
+/// A system that is typed goes before the flight's own, and that is told.
+#[test]
+fn another_system_than_the_flights_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let flight = plane(folder.path());
+    for (system, is_told) in [("EPSG:32632", false), ("EPSG:25832", true)] {
+        let output = planned(&flight, &["--crs", system]);
+        let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{notes}");
+        let said = format!("--crs {system} is taken; the flight itself says EPSG:32632");
+        assert_eq!(notes.contains(&said), is_told, "{notes}");
+    }
+}
+
 /// Missions of a plan with more batteries lie beside the one of a plan with fewer: that is said, and no other file is.
 #[test]
 fn missions_of_another_plan_are_named() {

@@ -300,6 +300,15 @@ fn sizes_beyond_what_was_measured_are_named() {
         said(&last).expect("a line"),
         format!("{beyond}, xmax (above 36.7583 mm)")
     );
+    // Three points for three parameters: it goes through them, and gives 500 mm and 210 mm back but for rounding.
+    assert_eq!(
+        said("size_mm,percent_passing\n1000,100\n800,97\n500,80\n").expect("a line"),
+        "beyond what was measured, by the function alone: P10, P20, P30, P40, P50, P60, P70 (below 500 mm)"
+    );
+    assert_eq!(
+        said("photo;D10 [mm];D50 [mm];D80 [mm]\nA;12,5;88;210\n").expect("a line"),
+        format!("{beyond}, xmax (above 210 mm)")
+    );
     // A largest size that is known is no guess.
     assert_eq!(
         said_with(&last, &["--xmax", "64"]).expect("a line"),

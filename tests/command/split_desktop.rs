@@ -649,8 +649,12 @@ fn a_flight_on_the_map_has_kml() {
     // The lab's numbers taken as UTM: on the equator, at the far west of zone 33.
     computed.crs = Some("EPSG:32633".to_owned());
     let to = tempfile::tempdir().expect("a folder");
+    // The last one lies over a hole, as the sample's table says.
+    let mut first_and_last = [false; 9];
+    first_and_last[0] = true;
+    first_and_last[8] = true;
     computed
-        .export(to.path(), &FIRST_TWO, &Progress::default())
+        .export(to.path(), &first_and_last, &Progress::default())
         .expect("exports");
     let files = contents(to.path());
     let features: Value = serde_json::from_str(text(&files, "footprints.geojson")).expect("JSON");
@@ -688,6 +692,13 @@ fn a_flight_on_the_map_has_kml() {
         .next()
         .expect("a position");
     assert_eq!(first, format!("{lon},{lat}"));
+    let described = kml
+        .descendants()
+        .filter(|node| node.has_tag_name("description"))
+        .filter_map(|node| node.text());
+    let why = "; over a hole in the cloud: top right";
+    let doubted: Vec<bool> = described.map(|text| text.contains(why)).collect();
+    assert_eq!(doubted, [false, true]);
 
     computed.crs = Some("a mine grid".to_owned());
     let summary = computed

@@ -9,7 +9,7 @@
 
 mod process;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -76,6 +76,8 @@ pub struct Ended {
     pub outcome: Outcome,
     /// For the tables.
     pub row: SeasonRow,
+    /// How many results of earlier runs were taken away, by the file or folder that they were or lay in.
+    pub taken_away: BTreeMap<String, usize>,
 }
 
 /// What happens.
@@ -284,6 +286,7 @@ impl Running<'_> {
                 findings: done.findings,
                 error: done.error,
             },
+            taken_away: done.taken_away,
         };
         (self.on_event)(Event::Ended(&ended));
         self.ended.push(ended);

@@ -1,7 +1,7 @@
 //! All flights of a season: one line of progress for each, the tables, the exit status.
 
 use std::cell::Cell;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -217,7 +217,9 @@ impl Batch {
             &on_event,
             progress,
         );
-        ended.map_err(|fault| fault.to_string())
+        let ended = ended.map_err(|fault| fault.to_string())?;
+        taken_away(&ended).iter().for_each(|line| say(line));
+        Ok(ended)
     }
 
     /// A flight in a line.
@@ -252,4 +254,27 @@ impl Batch {
         let written = write_results(to, &self.season.name, self.unit, rows, notes, force);
         written.map_err(|error| error.to_string())
     }
+}
+
+/// What of earlier runs is gone, a line for each file or folder, with how many flights it was of.
+fn taken_away(ended: &[Ended]) -> Vec<String> {
+    let mut all: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+    for (kind, files) in ended.iter().flat_map(|ended| &ended.taken_away) {
+        let (flights, all_files) = all.entry(kind).or_default();
+        *flights += 1;
+        *all_files += files;
+    }
+    let lines = all.into_iter().map(|(kind, (flights, files))| {
+        let files = match (kind.ends_with('/'), files) {
+            (false, _) => String::new(),
+            (true, 1) => " (1 file)".to_owned(),
+            (true, files) => format!(" ({files} files)"),
+        };
+        let flights = match flights {
+            1 => "1 flight".to_owned(),
+            flights => format!("{flights} flights"),
+        };
+        format!("taken away: {kind}{files} of {flights}, which an earlier run wrote and this one does not")
+    });
+    lines.collect()
 }

@@ -1,6 +1,7 @@
 //! The process of one flight. It is told what to do by a line on its standard input, says how far it is and what came
 //! of it on its standard output, and ends where its standard input does: whoever started it is not there any more.
 
+use std::collections::BTreeMap;
 use std::io::{self, Read};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -100,7 +101,7 @@ fn made(told: &FlightTold, progress: &Progress) -> Result<FlightDone, String> {
             return Ok(FlightDone {
                 as_before: true,
                 findings: Some(record.findings),
-                error: None,
+                ..FlightDone::default()
             });
         }
     }
@@ -160,9 +161,10 @@ fn made(told: &FlightTold, progress: &Progress) -> Result<FlightDone, String> {
     findings.photos = review.count();
     findings.verdicts = VerdictCounts::of(&review);
     findings.taken = day_of(&opened).map(|day| day.to_string());
+    let mut taken_away = BTreeMap::new();
     if error.is_none() {
         let written = recording.written();
-        remove_what_is_left(&told.to, &written, &before).map_err(text)?;
+        taken_away = remove_what_is_left(&told.to, &written, &before).map_err(text)?;
         let photos = opened
             .photo_files
             .iter()
@@ -177,6 +179,7 @@ fn made(told: &FlightTold, progress: &Progress) -> Result<FlightDone, String> {
         as_before: false,
         findings: Some(findings),
         error,
+        taken_away,
     })
 }
 

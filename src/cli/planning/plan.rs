@@ -85,7 +85,8 @@ pub(in crate::cli) struct PlanArguments {
     /// The unit of the surface's coordinates, where nobody says it: m, ft, ...
     #[arg(long, value_name = "UNIT")]
     unit: Option<LengthUnit>,
-    /// The coordinate system of the surface, where nobody says it, for a mission: EPSG:n, WKT or a PROJ text.
+    /// The coordinate system of the surface, for a mission, where the flight does not say it, or instead of what it says
+    /// (then that is told): EPSG:n, WKT or a PROJ text.
     #[arg(long, value_name = "CRS", allow_hyphen_values = true)]
     crs: Option<String>,
     /// The drone that is to fly: its camera, its gimbal, and DJI's numbers for its mission.
@@ -115,9 +116,10 @@ pub(in crate::cli) struct PlanArguments {
     /// When it is flown, as 2026-06-01T10:00+02:00: where the sun stands then, and what lies in shadow.
     #[arg(long, value_name = "TIME")]
     sun: Option<String>,
-    /// Write the mission to this file, for the ground station that its ending names: .kmz (DJI), .plan
-    /// (QGroundControl), .waypoints (Mission Planner), .csv (Litchi), .kml or .geojson. May be given several times. More
-    /// stops than one of them takes become several flights, NAME-1 and so on, each out from the take-off and home.
+    /// Write the mission to this file (needs --take-off, from where its heights count), for the ground station that its ending
+    /// names: .kmz (DJI), .plan (QGroundControl), .waypoints (Mission Planner), .csv (Litchi), .kml or .geojson. May be
+    /// given several times. More stops than one of them takes become several flights, NAME-1 and so on, each out from
+    /// the take-off and home.
     #[arg(long, value_name = "FILE", requires = "take_off")]
     mission: Vec<PathBuf>,
     #[command(flatten)]

@@ -96,6 +96,10 @@ pub fn fit_table(report: &FitReport) -> String {
     tables.join("\n")
 }
 
+/// Sizes that differ by less than this share are the same, to people and to the search of the fit: it gives a measured P80 back as
+/// 210.00000000000003.
+const SAME_SIZE: f64 = 1e-6;
+
 /// Which of the sizes that a function gives, by their names, lie beyond those that were measured; nothing where none does.
 fn beyond(points: &[[f64; 2]], given: &[(String, f64)], unit: LengthUnit) -> String {
     let sizes = points.iter().map(|[size, _]| *size);
@@ -107,8 +111,12 @@ fn beyond(points: &[[f64; 2]], given: &[(String, f64)], unit: LengthUnit) -> Str
         (!names.is_empty())
             .then(|| format!("{} ({end} {} {unit})", names.join(", "), trimmed(size, 6)))
     };
-    let below = named(&|size| size < least, "below", least);
-    let above = named(&|size| size > greatest, "above", greatest);
+    let below = named(&|size| size < least * (1.0 - SAME_SIZE), "below", least);
+    let above = named(
+        &|size| size > greatest * (1.0 + SAME_SIZE),
+        "above",
+        greatest,
+    );
     let all: Vec<String> = below.into_iter().chain(above).collect();
     match all.is_empty() {
         true => String::new(),

@@ -120,6 +120,7 @@ fn feature(footprint: &PhotoFootprint<'_>, report: &ScaleReport<'_>) -> Value {
             "used_top_95": ends(top),
             "used_bottom_95": ends(bottom),
             "verdict": photo.verdict.as_str(),
+            "reasons": photo.reasons_and_decision().join("; "),
             "corners_on_surface": photo.corners_on_surface().unwrap_or(0),
             "outline_complete": footprint.is_complete,
             "outline_points_off_surface": footprint.off_surface,

@@ -54,8 +54,12 @@ pub(super) fn document<'a>(
             photo.verdict,
             photo.corners_on_surface().unwrap_or(0)
         );
-        for note in photo.notes().into_iter().chain(photo.decided()) {
-            description += &format!("; {note}");
+        // Some notes are reasons, too.
+        let reasons = photo.reasons_and_decision();
+        let notes = photo.notes().into_iter();
+        let notes = notes.filter(|note| !reasons.contains(note));
+        for said in reasons.iter().cloned().chain(notes) {
+            description += &format!("; {said}");
         }
         let positions: Vec<String> = footprint
             .ring

@@ -102,6 +102,8 @@ pub struct Fit {
     pub notes: Vec<String>,
     /// Which of its parameters' values are not to be shown to people.
     pub not_determined: Vec<NotDetermined>,
+    /// The points [size, percent passing] that it was fitted to, sizes ascending.
+    fitted_to: Vec<[f64; 2]>,
     known: Known,
 }
 
@@ -135,7 +137,8 @@ impl Fit {
     }
 
     /// The size that `percent` passes, with its band at a confidence of `level` (0.95). The band is by
-    /// the delta method on the size's logarithm, with Student's t; there is none at 0 and 100 %.
+    /// the delta method on the size's logarithm, with Student's t; there is none at 0 and 100 %. Its
+    /// lower end does not lie below a measured size that less passed, for sure (`surely_above`).
     pub fn percentile(&self, percent: f64, level: f64) -> Percentile {
         let size = self.curve.size_at(percent);
         Percentile {
@@ -158,8 +161,23 @@ impl Fit {
             }
             Known::Repeats(repeats) => repeats.reach(level, |curve| curve.size_at(percent).ln())?,
         };
-        let band = [size / reach.exp(), size * reach.exp()];
+        let least = self.surely_above(percent, level).unwrap_or(0.0);
+        let band = [(size / reach.exp()).max(least), size * reach.exp()];
         (band[0] > 0.0 && band[1].is_finite()).then_some(band)
+    }
+
+    /// The largest measured size that less than `percent` passed, by the measurement and by all of the
+    /// function's band there: what `percent` passes is larger. Far beyond the points (the topsize) the
+    /// logarithm of a size is no straight line in the parameters, and the delta method's band of it
+    /// reaches back to sizes that a tenth of the rock was left on. That of the percents, at the points
+    /// themselves, is nearly straight.
+    fn surely_above(&self, percent: f64, level: f64) -> Option<f64> {
+        let below = self.fitted_to.iter().filter(|point| point[1] < percent);
+        let mut sizes = below.map(|point| point[0]);
+        sizes.rfind(|size| {
+            let band = self.band_at(*size, level);
+            band.is_some_and(|[_, most]| most < percent)
+        })
     }
 
     /// The same where its points are the mean of photos: known by how far the photos differ. `left_out` has the mean with one after
@@ -301,6 +319,9 @@ pub fn fit(
         let weights = options.weights.as_ref();
         weights.map_or(1.0, |weights| weights[index])
     };
+    let used = measured.iter().enumerate();
+    let used = used.filter(|(index, _)| weight(*index) > 0.0);
+    let fitted_to = used.map(|(_, point)| *point).collect();
     let total: f64 = (0..measured.len()).map(weight).sum();
     let weighted = |value: &dyn Fn(usize, &[f64; 2]) -> f64| -> f64 {
         let terms = measured.iter().enumerate();
@@ -337,6 +358,7 @@ pub fn fit(
         degrees_of_freedom,
         notes,
         not_determined,
+        fitted_to,
         known: uncertainty.map_or(Known::Nothing, |of| Known::Scatter(Box::new(of))),
     })
 }

@@ -10,6 +10,9 @@ use crate::{Curve, PERCENTILES};
 /// Other optima with a sum of at most this many times the least are told.
 const NEARLY: f64 = 1.01;
 
+/// Percents that differ by less are the same.
+const ROUNDING: f64 = 1e-9;
+
 /// What the notes are made of.
 pub(super) struct Told<'a> {
     pub(super) family: &'a Family,
@@ -78,9 +81,11 @@ pub(super) fn notes(told: &Told, not_determined: &[NotDetermined]) -> Vec<String
 /// Which of the usual percentiles nothing was measured at.
 fn beyond(points: &Points) -> Option<String> {
     let [first, last] = [points.points.first()?, points.points.last()?].map(|of| of.percent);
+    // Percents that were added up from what stayed on the sieves are off by rounding.
+    let measured = first - ROUNDING..=last + ROUNDING;
     let beyond = PERCENTILES
         .iter()
-        .filter(|percent| !(first..=last).contains(*percent));
+        .filter(|percent| !measured.contains(*percent));
     let beyond: Vec<String> = beyond.map(|percent| format!("P{percent}")).collect();
     let what = beyond.join(", ");
     (!beyond.is_empty()).then(|| {

@@ -275,6 +275,32 @@ fn some_rock_is_larger_than_what_it_did_not_pass() {
     assert!(fault.what.contains("not everything passed 355"), "{fault}");
 }
 
+/// A tenth stayed on 500 mm: the topsize is larger, though the delta method's band of it, by scipy, goes from 431.75 to 3341.57.
+/// By scipy's covariance at most 95.85 % pass 500: less than 99.95, and maybe more than 95. The band of P95 is 454.66 to 823.29.
+#[test]
+fn a_band_does_not_reach_below_a_sieve_that_surely_less_passed() {
+    let points = [[63.0, 15.0], [125.0, 30.0], [250.0, 60.0], [500.0, 90.0]];
+    let fit = fitted(&points, Model::Swebrec, &FitOptions::default()).expect("a fit");
+    let [low, high] = fit.topsize(0.95).band.expect("a band");
+    assert_eq!(low, 500.0);
+    assert!(near(high, 3341.57, 1e-4), "{high}");
+    let [low, high] = fit.percentile(95.0, 0.95).band.expect("a band");
+    assert!(near(low, 454.657, 1e-4), "{low}");
+    assert!(near(high, 823.286, 1e-4), "{high}");
+    // Where everything passed the largest sieve, the one below it counts: 46.71 by the delta method.
+    let points = [
+        [6.3, 11.2],
+        [12.5, 30.0],
+        [25.0, 60.0],
+        [50.0, 88.4],
+        [100.0, 100.0],
+    ];
+    let fit = fitted(&points, Model::Swebrec, &FitOptions::default()).expect("a fit");
+    let [low, high] = fit.topsize(0.95).band.expect("a band");
+    assert_eq!(low, 50.0);
+    assert!(near(high, 828.138, 1e-4), "{high}");
+}
+
 #[test]
 fn as_many_points_as_parameters_leave_nothing_over() {
     let truth = truths()[0];

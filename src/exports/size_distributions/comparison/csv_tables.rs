@@ -1,141 +1,151 @@
-//! A comparison as CSV: four tables with an empty line between them, as spreadsheets take them.
+//! A comparison as CSV: one table that programs and spreadsheets read, whose column `part` says what a line is of.
 
 use crate::fragmentation::Comparison;
 
-/// The tables: means of every method by size; percent errors by method and size; percentiles by method;
-/// norms by method, with the improvement over every other one. What is not known is empty; numbers read
-/// back to the same f64.
+/// Its columns. UNIT is that of the sizes, ENVELOPE half the envelope's width. (The first two and the last three also stood about the
+/// first table of earlier versions: by them a file is known as one that may be written over, `files/marks.rs`.)
+const COLUMNS: [&str; 22] = [
+    "method",
+    "size_UNIT",
+    "part",
+    "percentile",
+    "over",
+    "reference_size_UNIT",
+    "shift_percent",
+    "envelope_low_UNIT",
+    "envelope_high_UNIT",
+    "percent_passing",
+    "reference_percent_passing",
+    "difference",
+    "percent_error",
+    "within_ENVELOPE_percent",
+    "rms_difference",
+    "relative_norm_percent",
+    "mean_shift_percent",
+    "shift_spread_percent",
+    "improvement_percent",
+    "mean_percent_passing",
+    "standard_deviation",
+    "trials",
+];
+
+/// The cells of a line by their columns; the others are empty.
+type Line = Vec<(&'static str, String)>;
+
+/// The lines of its parts, one part after another: `mean` of every method by size, the reference's first; `error` by method and size;
+/// `percentile` and `norm` by method; `improvement` of a method over every other one. What is not known is empty; numbers read back to
+/// the same f64.
 ///
 /// # Errors
 /// Where memory runs out.
 pub fn comparison_csv(comparison: &Comparison) -> Result<String, csv::Error> {
-    let tables = [
-        means(comparison),
-        residuals(comparison),
-        percentiles(comparison),
-        norms(comparison),
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let unit = comparison.unit.to_string();
+    let envelope = comparison.options.envelope_percent.to_string();
+    let names = COLUMNS.map(|name| name.replace("UNIT", &unit).replace("ENVELOPE", &envelope));
+    writer.write_record(names)?;
+    let parts = [
+        ("mean", means(comparison)),
+        ("error", errors(comparison)),
+        ("percentile", percentiles(comparison)),
+        ("norm", norms(comparison)),
+        ("improvement", improvements(comparison)),
     ];
-    let mut texts = Vec::new();
-    for table in tables {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        for row in table {
-            writer.write_record(row)?;
+    for (part, lines) in parts {
+        for line in &lines {
+            writer.write_record(COLUMNS.map(|column| match column {
+                "part" => part,
+                _ => cell(line, column),
+            }))?;
         }
-        let bytes = writer.into_inner().map_err(|e| e.into_error())?;
-        // All that went in was UTF-8.
-        texts.push(String::from_utf8_lossy(&bytes).into_owned());
     }
-    Ok(texts.join("\n"))
+    let bytes = writer.into_inner().map_err(|e| e.into_error())?;
+    // All that went in was UTF-8.
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-fn means(comparison: &Comparison) -> Vec<Vec<String>> {
-    let mut rows = vec![vec![
-        "method".to_owned(),
-        format!("size_{}", comparison.unit),
-        "mean_percent_passing".to_owned(),
-        "standard_deviation".to_owned(),
-        "trials".to_owned(),
-    ]];
+fn cell<'a>(line: &'a [(&'static str, String)], column: &str) -> &'a str {
+    let found = line.iter().find(|(name, _)| *name == column);
+    found.map_or("", |(_, value)| value.as_str())
+}
+
+fn means(comparison: &Comparison) -> Vec<Line> {
     let others = comparison.methods.iter().map(|method| &method.curve);
-    for curve in std::iter::once(&comparison.reference).chain(others) {
-        for point in &curve.points {
-            rows.push(vec![
-                curve.method.clone(),
-                point.size.to_string(),
-                point.mean.to_string(),
-                number(point.standard_deviation),
-                point.trials.to_string(),
-            ]);
-        }
-    }
-    rows
+    let curves = std::iter::once(&comparison.reference).chain(others);
+    let lines = curves.flat_map(|curve| {
+        curve.points.iter().map(move |point| {
+            vec![
+                ("method", curve.method.clone()),
+                ("size_UNIT", point.size.to_string()),
+                ("mean_percent_passing", point.mean.to_string()),
+                ("standard_deviation", number(point.standard_deviation)),
+                ("trials", point.trials.to_string()),
+            ]
+        })
+    });
+    lines.collect()
 }
 
-fn residuals(comparison: &Comparison) -> Vec<Vec<String>> {
-    let mut rows = vec![vec![
-        "method".to_owned(),
-        format!("size_{}", comparison.unit),
-        "reference_percent_passing".to_owned(),
-        "percent_passing".to_owned(),
-        "difference".to_owned(),
-        "percent_error".to_owned(),
-        format!("within_{}_percent", comparison.options.envelope_percent),
-    ]];
-    for method in &comparison.methods {
-        for residual in &method.residuals {
-            rows.push(vec![
-                method.curve.method.clone(),
-                residual.size.to_string(),
-                residual.reference.to_string(),
-                number(residual.passing),
-                number(residual.difference),
-                number(residual.percent_error),
-                residual
-                    .within
-                    .map_or_else(String::new, |within| within.to_string()),
-            ]);
-        }
-    }
-    rows
+fn errors(comparison: &Comparison) -> Vec<Line> {
+    let lines = comparison.methods.iter().flat_map(|method| {
+        method.residuals.iter().map(move |residual| {
+            let within = residual.within.map(|within| within.to_string());
+            vec![
+                ("method", method.curve.method.clone()),
+                ("size_UNIT", residual.size.to_string()),
+                ("percent_passing", number(residual.passing)),
+                ("reference_percent_passing", residual.reference.to_string()),
+                ("difference", number(residual.difference)),
+                ("percent_error", number(residual.percent_error)),
+                ("within_ENVELOPE_percent", within.unwrap_or_default()),
+            ]
+        })
+    });
+    lines.collect()
 }
 
-fn percentiles(comparison: &Comparison) -> Vec<Vec<String>> {
-    let unit = comparison.unit;
-    let mut rows = vec![vec![
-        "method".to_owned(),
-        "percentile".to_owned(),
-        format!("reference_{unit}"),
-        format!("size_{unit}"),
-        "shift_percent".to_owned(),
-        format!("envelope_low_{unit}"),
-        format!("envelope_high_{unit}"),
-        "inside".to_owned(),
-    ]];
-    for method in &comparison.methods {
-        for percentile in &method.shift.percentiles {
-            rows.push(vec![
-                method.curve.method.clone(),
-                percentile.percent.to_string(),
-                percentile.reference.to_string(),
-                percentile.size.to_string(),
-                percentile.shift_percent.to_string(),
-                percentile.envelope[0].to_string(),
-                percentile.envelope[1].to_string(),
-                percentile.inside.to_string(),
-            ]);
-        }
-    }
-    rows
+fn percentiles(comparison: &Comparison) -> Vec<Line> {
+    let lines = comparison.methods.iter().flat_map(|method| {
+        method.shift.percentiles.iter().map(move |percentile| {
+            let [low, high] = percentile.envelope;
+            vec![
+                ("method", method.curve.method.clone()),
+                ("size_UNIT", percentile.size.to_string()),
+                ("percentile", percentile.percent.to_string()),
+                ("reference_size_UNIT", percentile.reference.to_string()),
+                ("shift_percent", percentile.shift_percent.to_string()),
+                ("envelope_low_UNIT", low.to_string()),
+                ("envelope_high_UNIT", high.to_string()),
+                ("within_ENVELOPE_percent", percentile.inside.to_string()),
+            ]
+        })
+    });
+    lines.collect()
 }
 
-fn norms(comparison: &Comparison) -> Vec<Vec<String>> {
-    let mut head = vec![
-        "method".to_owned(),
-        "rms_difference".to_owned(),
-        "relative_norm_percent".to_owned(),
-        "mean_shift_percent".to_owned(),
-        "shift_spread_percent".to_owned(),
-    ];
-    let others = || comparison.methods.iter().map(|method| &method.curve.method);
-    head.extend(others().map(|over| format!("improvement_percent_over_{over}")));
-    let mut rows = vec![head];
-    for method in &comparison.methods {
-        let name = &method.curve.method;
-        let mut row = vec![
-            name.clone(),
-            method.norm.rms_difference.to_string(),
-            method.norm.relative_percent.to_string(),
-            method.shift.mean_percent.to_string(),
-            number(method.shift.spread_percent),
-        ];
-        row.extend(others().map(|over| {
-            let mut all = comparison.improvements.iter();
-            let found = all.find(|found| found.method == *name && found.over == *over);
-            number(found.and_then(|found| found.percent))
-        }));
-        rows.push(row);
-    }
-    rows
+fn norms(comparison: &Comparison) -> Vec<Line> {
+    let lines = comparison.methods.iter().map(|method| {
+        let (norm, shift) = (&method.norm, &method.shift);
+        vec![
+            ("method", method.curve.method.clone()),
+            ("rms_difference", norm.rms_difference.to_string()),
+            ("relative_norm_percent", norm.relative_percent.to_string()),
+            ("mean_shift_percent", shift.mean_percent.to_string()),
+            ("shift_spread_percent", number(shift.spread_percent)),
+        ]
+    });
+    lines.collect()
+}
+
+fn improvements(comparison: &Comparison) -> Vec<Line> {
+    let lines = comparison.improvements.iter().map(|improvement| {
+        vec![
+            ("method", improvement.method.clone()),
+            ("over", improvement.over.clone()),
+            ("improvement_percent", number(improvement.percent)),
+        ]
+    });
+    lines.collect()
 }
 
 fn number(number: Option<f64>) -> String {
@@ -147,22 +157,54 @@ mod tests {
     use super::*;
     use crate::size_distributions::comparison::test_comparison::comparison;
 
+    /// One table: as many cells in every line as there are columns, and every cell in a column of its name.
     #[test]
-    fn four_tables() {
+    fn a_program_reads_it_as_one_table() {
         let text = comparison_csv(&comparison()).unwrap();
-        let tables: Vec<&str> = text.split("\n\n").collect();
-        assert_eq!(tables.len(), 4);
-        assert!(tables[0].starts_with(
-            "method,size_mm,mean_percent_passing,standard_deviation,trials\nsieve,10,0,,1\n"
-        ));
-        assert!(tables[0].contains("\npoint cloud,100,88,1.5,2\n"));
-        assert!(tables[1].contains("\npoint cloud,10,0,5,5,,\npoint cloud,100,80,88,8,10,true\n"));
-        assert!(tables[2].contains("\npoint cloud,50,40,36,-10,28,52,true\n"));
-        assert_eq!(
-            tables[3],
-            "method,rms_difference,relative_norm_percent,mean_shift_percent,shift_spread_percent,\
-             improvement_percent_over_point cloud,improvement_percent_over_scale object\n\
-             point cloud,4,9.4,-10,,,6\nscale object,4,10,-10,,-6.4,\n"
-        );
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let names = reader.headers().unwrap().clone();
+        let lines: Vec<csv::StringRecord> = reader.records().map(|line| line.unwrap()).collect();
+        // Two sizes of three curves; two sizes, one percentile, one norm and one improvement of two methods.
+        assert_eq!(lines.len(), 6 + 4 + 2 + 2 + 2);
+        let said = |line: &csv::StringRecord| -> String {
+            let cells = names.iter().zip(line).filter(|(_, cell)| !cell.is_empty());
+            let cells: Vec<String> = cells.map(|(name, cell)| format!("{name} {cell}")).collect();
+            cells.join(", ")
+        };
+        let said: Vec<String> = lines.iter().map(said).collect();
+        for (index, line) in [
+            (
+                0,
+                "method sieve, size_mm 10, part mean, mean_percent_passing 0, trials 1",
+            ),
+            (
+                3,
+                "method point cloud, size_mm 100, part mean, mean_percent_passing 88, standard_deviation 1.5, trials 2",
+            ),
+            (
+                6,
+                "method point cloud, size_mm 10, part error, percent_passing 5, reference_percent_passing 0, difference 5",
+            ),
+            (
+                7,
+                "method point cloud, size_mm 100, part error, percent_passing 88, reference_percent_passing 80, difference 8, \
+                 percent_error 10, within_30_percent true",
+            ),
+            (
+                10,
+                "method point cloud, size_mm 36, part percentile, percentile 50, reference_size_mm 40, shift_percent -10, \
+                 envelope_low_mm 28, envelope_high_mm 52, within_30_percent true",
+            ),
+            (
+                12,
+                "method point cloud, part norm, rms_difference 4, relative_norm_percent 9.4, mean_shift_percent -10",
+            ),
+            (
+                15,
+                "method scale object, part improvement, over point cloud, improvement_percent -6.4",
+            ),
+        ] {
+            assert_eq!(said[index], line);
+        }
     }
 }
