@@ -81,19 +81,20 @@ impl State {
         self.load_preview();
     }
 
+    /// Decides about the selected photo, and goes on to the next doubtful one where it was one itself, in its review: who goes
+    /// through all photos with arrows stays where she is.
     fn decide_and_go_on(&mut self, kind: DecisionKind) {
+        let is_reviewing = self.reviewed_flight().is_some();
         let Some(open) = &self.open else {
             return;
         };
         let Some((photo, reviewed)) = open.selected_review() else {
             return;
         };
-        if !reviewed.is_doubtful() {
-            return;
-        }
+        let goes_on = is_reviewing && reviewed.is_doubtful();
         let note = open.note_of(photo).to_owned();
         self.decide(photo, Some((kind, note)));
-        let Some(open) = &mut self.open else {
+        let Some(open) = self.open.as_ref().filter(|_| goes_on) else {
             return;
         };
         let is_decided = open

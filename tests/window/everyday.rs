@@ -12,7 +12,7 @@ use fragscale::flight::DecisionKind;
 use fragscale::render::{ColorBy, Scope};
 use fragscale::units::LengthUnit;
 
-use crate::desk::{Desk, Screen, copy, copy_files, flight};
+use crate::desk::{Desk, Screen, Written, copy, copy_files, flight};
 
 /// A window of this size without a graphics device.
 fn desk_of_size(size: [f32; 2], path: &str) -> Desk {
@@ -280,6 +280,22 @@ fn the_measured_distance_is_in_the_picture() {
         desk.written().iter().any(|w| w.text == number),
         "{number} is not on the viewport"
     );
+    // Its words are on plates: the rock behind them is of any colour.
+    let is_on_plate = |words: &Written| {
+        let shapes = desk.harness.output().shapes.iter();
+        let mut plates = shapes.filter_map(|clipped| match &clipped.shape {
+            egui::Shape::Rect(plate) if plate.fill.is_opaque() => Some(plate.rect),
+            _ => None,
+        });
+        let around = words.place.expand(12.0);
+        plates.any(|plate| plate.contains_rect(words.place) && around.contains_rect(plate))
+    };
+    let written = desk.written();
+    let words = |begin: &str| {
+        let mut found = written.iter().filter(|w| w.text.starts_with(begin));
+        found.next().expect("words")
+    };
+    assert!(is_on_plate(words(&number)) && is_on_plate(words("level ")));
     let measured = picture(&mut desk, "measured.png");
     let changed = measured
         .pixels()
@@ -361,6 +377,20 @@ fn the_tool_bar_is_one_row() {
             }
         }
     }
+}
+
+/// The units of the tool bar are those of scales: what is measured on the pile is in the unit of its coordinates, which is said.
+#[test]
+fn a_unit_says_what_is_in_it() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    let place = desk.node(Role::RadioButton, "Pixels per in").rect();
+    desk.harness.hover_at(place.center());
+    for _ in 0..90 {
+        desk.harness.step();
+    }
+    let said = "scales in pixels per in. Lengths and coordinates of the pile stay in m";
+    let mut written = desk.written().into_iter();
+    assert!(written.any(|written| written.text.contains(said)));
 }
 
 /// Where both panels leave nothing between them, the right one is there, and the left one once it is closed.

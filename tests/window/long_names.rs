@@ -381,6 +381,26 @@ fn short_names_are_whole_in_a_list_of_any_width() {
     }
 }
 
+/// The two numbers to type are in sight in a window of 800 x 600, however long the names are.
+#[test]
+fn both_scales_are_in_sight_in_a_small_window() {
+    let mut dice = Dice::new(23);
+    for most in [4, 8, 16, 40, 100] {
+        let folder = named(&mut dice, most);
+        let desk = desk(folder.path(), [800.0, 600.0], 1.0);
+        let edge = desk.viewport().left();
+        let written = desk.written();
+        for heading in ["Fitted top", "Fitted bottom"] {
+            let seen = written.iter().any(|written| {
+                let sight = written.seen_in.expand(1.0);
+                let is_seen = sight.contains_rect(written.place);
+                written.text == heading && is_seen && written.place.right() < edge
+            });
+            assert!(seen, "{most}: {heading}");
+        }
+    }
+}
+
 /// A long line of the log is read to its end, in as many rows as it needs.
 #[test]
 fn lines_of_the_log_are_broken_and_not_cut() {

@@ -51,6 +51,16 @@ fn halves() -> HashMap<String, [f64; 4]> {
         .collect()
 }
 
+/// The half of each column that its numbers are written by: the middle one of all photos.
+fn typical_halves() -> [f64; 4] {
+    let all: Vec<[f64; 4]> = halves().into_values().collect();
+    std::array::from_fn(|column| {
+        let mut of_column: Vec<f64> = all.iter().map(|halves| halves[column]).collect();
+        of_column.sort_by(f64::total_cmp);
+        of_column[(of_column.len() - 1) / 2]
+    })
+}
+
 /// How many digits a number has down to the first of half its interval, the second where that is a 1.
 fn digits(value: f64, half: f64) -> i32 {
     let first = half.log10().floor();
@@ -77,13 +87,13 @@ fn assert_shown(shown: &str, value: f64, digits: i32) {
 fn the_sample_opens_from_the_start_page_with_the_commands_scales() {
     let mut desk = Desk::new(None);
     desk.click(Role::Button, "Open the sample flight");
-    let (scales, fitted, halves) = (scales(), fitted(), halves());
+    let (scales, fitted, halves) = (scales(), fitted(), typical_halves());
     let rows = desk.rows();
     assert_eq!(rows.len(), 9);
     for (photo, cells) in &rows {
         assert_eq!(&cells[0], photo);
         let pairs = fitted[photo].into_iter().chain(scales[photo]);
-        let places = [1, 2, 5, 6].into_iter().zip(halves[photo]);
+        let places = [1, 2, 5, 6].into_iter().zip(halves);
         for ((place, half), scale) in places.zip(pairs) {
             assert_shown(&cells[place], scale, digits(scale, half));
         }
@@ -92,7 +102,7 @@ fn the_sample_opens_from_the_start_page_with_the_commands_scales() {
     // The other unit is the same number with another factor.
     desk.click(Role::RadioButton, "Pixels per m");
     for (photo, cells) in desk.rows() {
-        let [of_fitted, _, of_top, of_bottom] = halves[&photo];
+        let [of_fitted, _, of_top, of_bottom] = halves;
         for (cell, scale, half) in [
             (&cells[1], fitted[&photo][0], of_fitted),
             (&cells[5], scales[&photo][0], of_top),
@@ -103,6 +113,25 @@ fn the_sample_opens_from_the_start_page_with_the_commands_scales() {
             let last = 10_f64.powi(scale.log10().floor() as i32 + 3 - digits);
             let shown: f64 = cell.parse().expect("a number");
             assert!((shown - scale * 100.0).abs() <= last * 0.500_001, "{cell}");
+        }
+    }
+}
+
+/// A column is read from above: 48.3 and 49.91 below each other are not. All digits are in the hover text and in what is copied.
+#[test]
+fn the_numbers_of_a_column_have_the_same_decimals() {
+    for path in ["assets/sample", "tests/windrow"] {
+        let mut desk = Desk::new(Some(&flight(path)));
+        for unit in ["in", "ft", "m", "mm", "cm"] {
+            desk.click(Role::RadioButton, &format!("Pixels per {unit}"));
+            let rows = desk.rows();
+            let decimals = |cell: &String| cell.split_once('.').map_or(0, |(_, after)| after.len());
+            for column in [1, 2, 5, 6] {
+                let cells: Vec<&String> = rows.iter().map(|(_, cells)| &cells[column]).collect();
+                let first = decimals(cells[0]);
+                let all = cells.iter().all(|cell| decimals(cell) == first);
+                assert!(all, "{path}, {unit}, {column}: {cells:?}");
+            }
         }
     }
 }

@@ -3,9 +3,12 @@
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, Theme};
+use egui_kittest::kittest::NodeT;
 use fragscale::app::Command;
 use fragscale::app::command::Tab;
+use fragscale::app::open_flight::tracing::Trace;
 use fragscale::flight::{Along, DecisionKind, Doubt, InView, Limits, OnPhoto, Verdict};
+use fragscale::scale::ScaleObjectKind;
 
 use crate::desk::{Desk, Screen, flight};
 
@@ -100,11 +103,80 @@ fn doubtful_photos_are_reviewed_with_keys_alone() {
     );
     desk.press(NONE, Key::Escape);
     assert_eq!(desk.harness.state().state().tab, Tab::Photo);
-    // Outside of the review the same keys decide nothing.
+    // Outside of the review nothing is accepted by a key.
     let before = desk.open().settings();
-    desk.press(NONE, Key::Delete);
     desk.press(NONE, Key::Enter);
     assert_eq!(desk.open().settings(), before);
+}
+
+/// Trusted photos, too: in the review, whose arrows go through all of them, and beside it.
+#[test]
+fn delete_leaves_any_selected_photo_out() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.press(NONE, Key::N);
+    desk.press(NONE, Key::ArrowUp);
+    let (photo, reviewed) = desk.open().selected_review().expect("a photo");
+    assert!(!reviewed.is_doubtful());
+    desk.press(NONE, Key::Enter);
+    assert_eq!(decision(&desk, photo), None, "nothing is to be accepted");
+    desk.press(NONE, Key::Delete);
+    assert_eq!(decision(&desk, photo), Some(DecisionKind::LeftOut));
+    assert_eq!(desk.open().selected, Some(photo), "arrows go on from here");
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(decision(&desk, photo), None);
+
+    desk.click(Role::Tab, "Photo");
+    desk.fill("Note on the photo", "blurred");
+    desk.press(NONE, Key::Delete);
+    assert_eq!(decision(&desk, photo), Some(DecisionKind::LeftOut));
+    assert_eq!(note(&desk, photo).as_deref(), Some("blurred"));
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(decision(&desk, photo), None);
+
+    // While an outline is traced the key could be meant for its last point.
+    let bar = ScaleObjectKind::Bar;
+    for step in [Trace::Size(bar, 0.25), Trace::Begin(bar)] {
+        desk.harness.state_mut().apply(Command::Trace(step));
+    }
+    desk.settle();
+    desk.press(NONE, Key::Delete);
+    assert_eq!(decision(&desk, photo), None);
+    desk.press(NONE, Key::Escape);
+
+    desk.press(NONE, Key::F1);
+    for said in [
+        "Leave the selected photo out",
+        "Leave this photo out of the export, or take it along",
+    ] {
+        assert!(desk.says(said), "{said}");
+    }
+}
+
+/// Its decision is shown, noted and taken back in the review as that of a doubtful one is.
+#[test]
+fn a_trusted_photo_that_was_left_out_is_reviewed() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    // The page begins with a doubtful photo.
+    desk.click(Role::Tab, "Review");
+    desk.click(Role::Row, "Photo IMG_0001.jpg");
+    desk.press(NONE, Key::Space);
+    assert!(
+        desk.says("Nothing speaks against the selected photo."),
+        "{:?}",
+        desk.texts()
+    );
+    assert!(desk.says("left out on "), "{:?}", desk.texts());
+    desk.fill("Note of the review", "blurred");
+    // Enter in the note accepts with it.
+    assert_eq!(decision(&desk, 0), Some(DecisionKind::Accepted));
+    desk.click(Role::Button, "Leave the selected photo out");
+    assert_eq!(decision(&desk, 0), Some(DecisionKind::LeftOut));
+    assert_eq!(note(&desk, 0).as_deref(), Some("blurred"));
+    assert_eq!(desk.open().selected, Some(0));
+    desk.click(Role::Button, "Take the decision back");
+    assert_eq!(decision(&desk, 0), None);
+    let accept = desk.node(Role::Button, "Accept the reviewed photo");
+    assert!(accept.accesskit_node().is_disabled());
 }
 
 fn note(desk: &Desk, photo: usize) -> Option<String> {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
+use egui_kittest::kittest::NodeT;
 use fragscale::app::Command;
 use fragscale::app::size_distributions::{Computed, DistributionCommand, Page, Settings};
 use fragscale::app::tasks::Task;
@@ -219,6 +220,10 @@ fn sizes_in_another_unit_are_the_same_sizes() {
     assert!((p50(&desk) * 25.4 / before - 1.0).abs() < 1e-6);
     assert!(desk.says("xmax in"));
     desk.press(Modifiers::COMMAND, Key::Z);
+    desk.click(Role::RadioButton, "Sizes in ft");
+    assert_eq!(computed(&desk).analysis.photos.unit, LengthUnit::Foot);
+    assert!((p50(&desk) * 304.8 / before - 1.0).abs() < 1e-6);
+    desk.press(Modifiers::COMMAND, Key::Z);
     assert!((p50(&desk) / before - 1.0).abs() < 1e-12);
 }
 
@@ -348,6 +353,27 @@ fn the_field_for_a_table_has_the_keys() {
     desk.settle();
     let page = &desk.harness.state().state().distributions;
     assert_eq!(page.paste.table, "size\tpassing\n");
+}
+
+/// How a table comes in is said in the empty field: a hover text lay over the fields below it.
+#[test]
+fn nothing_lies_over_the_fields_of_a_pasted_table() {
+    let hint = "Ctrl+V pastes what was copied elsewhere";
+    let mut desk = Desk::new(None);
+    desk.press(Modifiers::COMMAND, Key::Num5);
+    desk.click(Role::Button, "Paste table…");
+    let says = |desk: &Desk| desk.written().iter().any(|w| w.text.contains(hint));
+    assert!(says(&desk));
+    paste(&mut desk, "size\tpassing\n1\t10\n2\t35\n4\t80\n");
+    let field = desk.node(Role::TextInput, "Table");
+    let words = field.accesskit_node().description();
+    assert_eq!(words.as_deref(), Some(hint));
+    let place = field.rect();
+    desk.harness.hover_at(place.center());
+    for _ in 0..90 {
+        desk.harness.step();
+    }
+    assert!(!says(&desk));
 }
 
 #[test]

@@ -71,7 +71,7 @@ actions! {
         command: |state| state.scales_to_copy().map(|_| Command::CopyScales),
     }
     CHOOSE {
-        label: "Export this photo or not",
+        label: "Leave this photo out of the export, or take it along",
         hover: "Take the selected photo along into the export, or leave it out",
         shortcut: keys(Modifiers::NONE, Key::Space),
         command: |state| {

@@ -1,23 +1,46 @@
-//! The review of doubtful photos, with keys alone.
+//! The review of photos, with keys alone: N goes through the doubtful ones, arrows through all.
 
 use egui::{Key, Modifiers};
 
-use super::{Action, keys, on_fragments, on_plan};
+use super::{Action, beside_photos, keys, on_fragments, on_plan};
 use crate::command::{Command, ReviewStep};
 use crate::fragments::FragmentStep;
+use crate::open_flight::OpenFlight;
+use crate::open_flight::survey::Drawn;
 use crate::planning::PlanStep;
 use crate::state::State;
 
 fn reviewed(state: &State, step: ReviewStep) -> Option<Command> {
     let open = state.reviewed_flight().filter(|_| state.asking.is_none())?;
-    (!open.table.doubtful.is_empty()).then_some(Command::Review(step))
+    open.selected.map(|_| Command::Review(step))
+}
+
+/// Whether points are set with the mouse: Delete would be meant for the last of them.
+fn is_setting_points(open: &OpenFlight) -> bool {
+    let pointer = &open.pointer;
+    open.objects.tracing.is_some()
+        || open.control.is_on && open.control.chosen.is_some()
+        || pointer.drawn.as_ref().is_some_and(Drawn::is_in_hand)
+        || pointer.picked.is_on
+}
+
+/// Leaves the selected photo out, doubtful or not, in a review or beside it.
+fn leave_out(state: &State) -> Option<Command> {
+    let open = state.open.as_deref().filter(|_| state.asking.is_none())?;
+    let (_, photo) = open.selected_review()?;
+    let is_in_turn = state.reviewed_flight().is_some() && photo.is_doubtful();
+    let can = is_in_turn || !is_setting_points(open);
+    can.then(|| beside_photos(state, Command::Review(ReviewStep::LeaveOut)))
+        .flatten()
 }
 
 /// Accepts the photo that is reviewed, where one is: what Enter does there.
 pub(super) fn accept(state: &State) -> Option<Command> {
     let open = state.reviewed_flight()?;
     let (_, photo) = open.selected_review()?;
-    let can = photo.is_doubtful() && open.why_not_accepted(&photo).is_none();
+    // Nothing is to be accepted of a photo that goes along by itself.
+    let is_asked = photo.is_doubtful() || photo.decision.is_some();
+    let can = is_asked && open.why_not_accepted(&photo).is_none();
     can.then(|| reviewed(state, ReviewStep::Accept)).flatten()
 }
 
@@ -38,7 +61,10 @@ actions! {
         label: "Doubtful photo before",
         hover: "Go back to the photo before in the review",
         shortcut: keys(Modifiers::SHIFT, Key::N),
-        command: |state| reviewed(state, ReviewStep::Back),
+        command: |state| {
+            let open = state.reviewed_flight().filter(|_| state.asking.is_none())?;
+            (!open.table.doubtful.is_empty()).then_some(Command::Review(ReviewStep::Back))
+        },
     }
     ACCEPT {
         label: "Accept the reviewed photo",
@@ -47,8 +73,8 @@ actions! {
         command: |state| accept(state),
     }
     LEAVE_OUT {
-        label: "Leave the reviewed photo out",
-        hover: "Leave the photo out of the export, with the note, and go on to the next one",
+        label: "Leave the selected photo out",
+        hover: "Leave the photo out of the export, with the note; in a review of doubtful photos go on to the next one",
         shortcut: keys(Modifiers::NONE, Key::Delete),
         command: |state| {
             if let Some(planning) = on_plan(state) {
@@ -58,8 +84,7 @@ actions! {
             if let Some(command) = fragments {
                 return command;
             }
-            let (_, photo) = state.reviewed_flight()?.selected_review()?;
-            photo.is_doubtful().then(|| reviewed(state, ReviewStep::LeaveOut)).flatten()
+            leave_out(state)
         },
     }
     WRITE_NOTE {

@@ -15,9 +15,9 @@ pub enum ReviewStep {
     TakeNote(usize),
     /// The keys go into the note.
     WriteNote,
-    /// Takes the photo along, with the note, and goes on.
+    /// Takes the photo along, with the note; from a doubtful one in a review it goes on.
     Accept,
-    /// Leaves the photo out, with the note, and goes on.
+    /// Leaves the photo out, with the note; from a doubtful one in a review it goes on.
     LeaveOut,
     /// Ends the review.
     Leave,

@@ -47,7 +47,7 @@ use survey::clip::Clip;
 use survey::picked::PickedPoints;
 use survey::surveyor::Surveyor;
 use survey::{Drawn, SecondBase};
-use table::{Counts, PhotosTable, Row};
+use table::{Counts, PhotosTable, Row, Typical};
 use tint::PhotoTint;
 use tracing::TracedObjects;
 
@@ -471,8 +471,10 @@ impl OpenFlight {
         let doubtful =
             |(photo, row): (usize, &Row<'_>)| row.line.photo.is_doubtful().then_some(photo);
         let doubtful = rows.iter().enumerate().filter_map(doubtful).collect();
+        let typical = Typical::of_columns(&rows);
         self.table.shown = self.table.order.shown(&rows);
         self.table.doubtful = doubtful;
+        self.table.typical = typical;
         self.table.counts = Counts::new(&self.review);
         self.look_at_health();
     }

@@ -1,7 +1,8 @@
-//! Which photos the table shows, and in which order.
+//! Which photos the table shows, in which order, and with how many decimals.
 
-use crate::exports::{ColumnValue, PhotoColumn, PhotoLine};
+use crate::exports::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn, PhotoLine};
 use crate::flight::{Along, PhotoReview, Review, Verdict};
+use crate::numbers::{as_its_interval_allows, is_width};
 
 /// What the table can be sorted by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,6 +53,8 @@ pub struct PhotosTable {
     pub doubtful: Vec<usize>,
     /// How many photos are what.
     pub counts: Counts,
+    /// What the numbers of the columns are like.
+    pub typical: Vec<Typical>,
     /// The photo that the mouse is over.
     pub hovered: Option<usize>,
 }
@@ -85,6 +88,99 @@ impl Counts {
         let mut verdicts = self.verdicts.iter();
         let found = verdicts.find(|(other, _)| *other == verdict);
         found.map_or(0, |(_, count)| *count)
+    }
+}
+
+/// What the numbers of a column are like: all of them have the same decimals, as a column is read from above. Of the review as it
+/// was when the table was arranged, as [`Counts`] are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Typical {
+    column: &'static PhotoColumn,
+    /// The median: pixels per world unit of scales, else world units.
+    value: f64,
+    /// The median of half their intervals; `None` where nobody knows any.
+    half: Option<f64>,
+}
+
+impl Typical {
+    /// Of the columns whose numbers have so many digits as they are sure.
+    pub(crate) fn of_columns(rows: &[Row<'_>]) -> Vec<Self> {
+        let is_one = |column: &&PhotoColumn| {
+            let is_rounded = matches!(column.kind, ColumnKind::Scale | ColumnKind::Length);
+            column.width.is_some() && is_rounded
+        };
+        let columns = PHOTO_COLUMNS.iter().filter(is_one);
+        columns
+            .filter_map(|column| Self::of(column, rows))
+            .collect()
+    }
+
+    fn of(column: &'static PhotoColumn, rows: &[Row<'_>]) -> Option<Self> {
+        let value = median(rows.iter().filter_map(|row| number(column, &row.line)))?;
+        let halves = rows.iter().filter_map(|row| half(column, &row.line));
+        let half = median(halves.filter(|half| is_width(half / value.abs() * 100.0)));
+        Some(Self {
+            column,
+            value,
+            half,
+        })
+    }
+
+    /// A number of the column with its decimals, `factor` times as large as in the world's unit; `None` where too little would be
+    /// left of it: of a photo from ten times as far.
+    fn text(&self, number: f64, factor: f64) -> Option<String> {
+        let value = self.value.abs() * factor;
+        if number.abs() * 10.0 < value {
+            return None;
+        }
+        // Without an interval down to the fourth digit, but none before the point is rounded away.
+        let fourth_digit = || 5.0 * 10_f64.powf((value.log10().floor() - 3.0).min(0.0));
+        let half = self.half.map_or_else(fourth_digit, |half| half * factor);
+        Some(as_its_interval_allows(number, number - half, number + half))
+    }
+}
+
+/// The number that a column holds of a photo.
+fn number(column: &PhotoColumn, line: &PhotoLine<'_>) -> Option<f64> {
+    match (column.value)(line) {
+        ColumnValue::Number(number) => number.filter(|number| number.is_finite()),
+        _ => None,
+    }
+}
+
+/// Half the interval of a scale.
+fn half(column: &PhotoColumn, line: &PhotoLine<'_>) -> Option<f64> {
+    let sure = line.uncertainty()?;
+    let ends = match column.name {
+        "Top" => sure.top,
+        "Bottom" => sure.bottom,
+        "Fitted top" => sure.fitted_top,
+        "Fitted bottom" => sure.fitted_bottom,
+        _ => None,
+    }?;
+    let half = (ends.high - ends.low) / 2.0;
+    half.is_finite().then_some(half)
+}
+
+/// The number in the middle; of two the smaller one, which has more decimals.
+fn median(numbers: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut all: Vec<f64> = numbers.collect();
+    all.sort_by(f64::total_cmp);
+    let last = all.len().checked_sub(1)?;
+    all.get(last / 2).copied()
+}
+
+impl PhotosTable {
+    /// What the list says of a photo in a column of numbers; all digits are in [`PhotoColumn::table_value`].
+    pub fn number(&self, column: &PhotoColumn, line: &PhotoLine<'_>) -> String {
+        let mut typical = self.typical.iter();
+        let typical = typical.find(|typical| typical.column == column);
+        let factor = match column.kind {
+            ColumnKind::Scale => line.unit.in_units_of(line.photo.unit),
+            _ => 1.0,
+        };
+        let text = || typical?.text(number(column, line)?, factor);
+        text().unwrap_or_else(|| column.short_value(line))
     }
 }
 
@@ -151,7 +247,6 @@ mod tests {
 
     use super::*;
     use crate::camera::{Camera, Distortion, Pose};
-    use crate::exports::PHOTO_COLUMNS;
     use crate::flight::{Flight, FlightParts, Limits, LookedUp, Outcome, Photo};
     use crate::scale::{Ground, ImageKind};
     use crate::surface::{Cloud, Surface};
@@ -217,6 +312,48 @@ mod tests {
     fn by(name: &str) -> SortBy {
         let column = PHOTO_COLUMNS.iter().find(|column| column.name == name);
         SortBy::Column(column.expect("a column"))
+    }
+
+    /// By hand: the decimals of one number, whatever unit and value.
+    #[test]
+    fn numbers_of_a_column_have_the_same_decimals() {
+        let column = PHOTO_COLUMNS
+            .iter()
+            .find(|column| column.name == "Fitted top")
+            .expect("a column");
+        let typical = |half| Typical {
+            column,
+            value: 2000.0,
+            half,
+        };
+        for (half, factor, texts) in [
+            // 0.4 px/cm of 20 allow one decimal, 1.0 px/in of 51 as well.
+            (
+                Some(40.0),
+                0.01,
+                [Some("19.9"), Some("48.3"), Some("2.1"), None],
+            ),
+            (Some(40.0), 0.0254, [Some("19.9"), Some("48.3"), None, None]),
+            // Nothing is known: four digits of a usual one.
+            (
+                None,
+                0.01,
+                [Some("19.91"), Some("48.33"), Some("2.10"), None],
+            ),
+            (None, 1.0, [None, None, None, None]),
+        ] {
+            let numbers = [19.9132, 48.328, 2.1, 1.9];
+            let said = numbers.map(|number| typical(half).text(number, factor));
+            assert_eq!(said.each_ref().map(Option::as_deref), texts, "{half:?}");
+        }
+        let whole = typical(None).text(12_345.6, 1.0);
+        assert_eq!(whole.as_deref(), Some("12346"));
+        assert_eq!(
+            median([3.0, 1.0, 2.0, 4.0].into_iter()),
+            Some(2.0),
+            "the smaller of two"
+        );
+        assert_eq!(median(std::iter::empty()), None);
     }
 
     #[test]

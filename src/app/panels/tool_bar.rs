@@ -74,7 +74,7 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         for unit in UNITS {
             let chosen = state.preferences.unit() == unit;
             let button = ui.selectable_label(chosen, unit.symbol());
-            let button = button.on_hover_text(format!("Show and export pixels per {unit}"));
+            let button = button.on_hover_text(what_is_in(state, unit));
             button.widget_info(|| {
                 let label = format!("Pixels per {unit}");
                 egui::WidgetInfo::selected(egui::Role::RadioButton, true, chosen, label)
@@ -120,6 +120,18 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             commands.extend((actions::file::EXPORT.command)(state));
         }
     });
+}
+
+/// What a unit of the bar is for: scales alone, as lengths on the pile are in the unit of its coordinates.
+fn what_is_in(state: &State, unit: LengthUnit) -> String {
+    let scales = format!("Show and export scales in pixels per {unit}");
+    match &state.open {
+        Some(open) => {
+            let lengths = open.flight().parts().unit_of_lengths();
+            format!("{scales}. Lengths and coordinates of the pile stay in {lengths}")
+        }
+        None => scales,
+    }
 }
 
 /// Verdicts that stand in the bar with 0, too.

@@ -6,6 +6,9 @@ use super::Scene;
 use crate::picture::Anchor;
 use crate::render::{Label, viridis};
 
+/// The colour of what is measured, in the renderer's picture.
+const MEASURED: [u8; 3] = [255, 60, 180];
+
 pub(super) fn write(scene: &Scene, label: &Label, ui: &egui::Ui) {
     let anchor = match label.anchor {
         Anchor::TopLeft => Align2::LEFT_TOP,
@@ -22,7 +25,30 @@ pub(super) fn write(scene: &Scene, label: &Label, ui: &egui::Ui) {
     let painter = ui.painter().with_clip_rect(scene.place);
     let color = Color32::from_rgb(red, green, blue);
     let at = scene.screen(label.at);
-    haloed(&painter, at, anchor, &label.text, 13.0, color, ui);
+    match label.color == MEASURED {
+        true => on_plate(&painter, at, anchor, &label.text, color, ui),
+        false => haloed(&painter, at, anchor, &label.text, 13.0, color, ui),
+    }
+}
+
+/// A text on a plate as a tooltip has, with a rim of the line's colour: numbers to be read off are hard to read in thin letters on
+/// broken rock.
+fn on_plate(
+    painter: &egui::Painter,
+    at: Pos2,
+    anchor: Align2,
+    text: &str,
+    rim: Color32,
+    ui: &egui::Ui,
+) {
+    let color = ui.visuals().text_color();
+    let font = FontId::proportional(13.0);
+    let galley = painter.layout_no_wrap(text.to_owned(), font, color);
+    let place = anchor.anchor_size(at, galley.size());
+    let plate = place.expand2(vec2(5.0, 2.0));
+    painter.rect_filled(plate.expand(1.0), 4.0, rim);
+    painter.rect_filled(plate, 3.0, ui.visuals().window_fill);
+    painter.galley(place.min, galley, color);
 }
 
 /// What the colours mean: a bar at the right edge, round values left of it, the title over it.

@@ -11,6 +11,10 @@ pub(super) const CHECK: f32 = 24.0;
 /// The least that names have, so that numbers that matter first are in sight; short names are whole.
 const LEAST_NAME: f32 = 60.0;
 
+/// Names up to this width are whole before the scales to type are in sight: so wide may they be in the list of a window of 800
+/// points. Longer ones, which are cut in most lists, give way to these scales.
+const SHORT_NAME: f32 = 112.0;
+
 /// A name narrower than this has no thumbnail beside it.
 const WITH_THUMBNAIL: f32 = 128.0;
 
@@ -66,6 +70,10 @@ impl Columns {
             return widths;
         };
         let least_name = self.seen[name].clamp(LEAST_NAME, widths[name].max(LEAST_NAME));
+        let beside_scales = match self.seen[name] > SHORT_NAME {
+            true => LEAST_NAME,
+            false => least_name,
+        };
         let others = |(place, width): (usize, &f32)| (place != name).then_some(width + gap);
         let all: f32 = widths.iter().enumerate().filter_map(others).sum();
         let room = room - CHECK - gap;
@@ -75,9 +83,10 @@ impl Columns {
             // As many as are wholly in sight beside a name; the name fills the place up to the next one.
             let (mut left, usual) = (room, widths[name]);
             for (place, column) in self.all.iter().enumerate() {
-                let least = match is_behind(column, self.pair) {
-                    true => usual,
-                    false => least_name,
+                let least = match (is_behind(column, self.pair), column.kind) {
+                    (true, _) => usual,
+                    (false, ColumnKind::Scale) => beside_scales,
+                    (false, _) => least_name,
                 };
                 let width = widths[place] + gap;
                 if place == name {

@@ -146,7 +146,7 @@ fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
                                 names::name(ui, &text);
                             }
                             kind => {
-                                let text = column.short_value(&line);
+                                let text = open.table.number(column, &line);
                                 columns.note(place, &text, 0.0, ui);
                                 let number = names::whole_number(ui, text, false);
                                 if kind == ColumnKind::Scale {

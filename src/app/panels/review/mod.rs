@@ -1,4 +1,4 @@
-//! The review: one doubtful photo with its reasons and what shows them, to be accepted or left out.
+//! The review: one photo with what speaks against it and what shows that, to be accepted or left out.
 
 mod row_menu;
 
@@ -29,10 +29,9 @@ pub(super) fn review(
         return;
     };
     progress(state, open, ui, commands);
-    let selected = open.selected_review();
-    let Some((photo, reviewed)) = selected.filter(|(_, photo)| photo.is_doubtful()) else {
+    let Some((photo, reviewed)) = open.selected_review() else {
+        ui.weak("Select a photo in the table or in the viewport.");
         if !open.table.doubtful.is_empty() {
-            ui.weak("Nothing speaks against the selected photo.");
             button(
                 state,
                 actions::review::NEXT_DOUBTFUL,
@@ -49,6 +48,9 @@ pub(super) fn review(
         inspector.reason_picture(state, open, (photo, reviewed), &sight.on_photo, ui);
     }
     egui::ScrollArea::vertical().show_focused(ui, |ui| {
+        if !reviewed.is_doubtful() && open.review.is_looked_at() {
+            ui.weak("Nothing speaks against the selected photo.");
+        }
         reasons(state, open, reviewed, ui, commands);
         size_errors(state, reviewed, ui);
         if let Some(decided) = reviewed.decided() {
@@ -104,9 +106,10 @@ fn heading(reviewed: PhotoReview<'_>, ui: &mut egui::Ui) {
     let right = egui::Layout::right_to_left(egui::Align::Center);
     let row = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(row, right, |ui| {
-        let verdict = reviewed.verdict;
-        let text = format!("{} {verdict}", verdict_sign(verdict));
-        ui.colored_label(verdict_color(verdict, ui.visuals()), text);
+        if let Some(verdict) = reviewed.settled() {
+            let text = format!("{} {verdict}", verdict_sign(verdict));
+            ui.colored_label(verdict_color(verdict, ui.visuals()), text);
+        }
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             let body = egui::TextStyle::Body;
             names::styled(ui, reviewed.name(), body, RichText::strong);
@@ -196,9 +199,9 @@ fn decide(
             ui,
             commands,
         );
-        if let Some(why) = open.why_not_accepted(&reviewed) {
-            accept.on_disabled_hover_text(why);
-        }
+        let goes_by_itself = "Nothing speaks against it: there is nothing to accept";
+        let why_not = open.why_not_accepted(&reviewed);
+        accept.on_disabled_hover_text(why_not.unwrap_or(goes_by_itself));
         button(
             state,
             actions::review::LEAVE_OUT,
@@ -213,7 +216,8 @@ fn decide(
                 let label = "Take the decision back";
                 egui::WidgetInfo::labeled(egui::Role::Button, true, label)
             });
-            if take_back.clicked() {
+            let hover = "Decide nothing: the photo goes along if nothing speaks against it";
+            if take_back.on_hover_text(hover).clicked() {
                 commands.push(Command::Decide(photo, None));
             }
         }

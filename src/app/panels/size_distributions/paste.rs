@@ -1,6 +1,7 @@
 //! The small window that a table is pasted into.
 
 use crate::command::Command;
+use crate::panels::described;
 use crate::panels::field::combo_box;
 use crate::panels::path_field::takes_the_keys_at_first;
 use crate::panels::working::working;
@@ -8,6 +9,9 @@ use crate::size_distributions::{DistributionCommand, PasteForm};
 use crate::state::State;
 use crate::tasks::work::Task;
 use crate::units::LengthUnit;
+
+/// In the empty field: where a table comes from, and what it looks like.
+const HINT: &str = "Ctrl+V pastes what was copied elsewhere:\n\nsize_mm\tpercent_passing\n16\t12.5\n31.5\t40\n63\t100";
 
 /// Draws the window's contents.
 pub(in crate::panels) fn paste(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -22,14 +26,17 @@ pub(in crate::panels) fn paste(state: &State, ui: &mut egui::Ui, commands: &mut 
         .max_height(most)
         .show(ui, |ui| {
             let field = egui::TextEdit::multiline(&mut form.table)
-                .hint_text("size_mm\tpercent_passing\n16\t12.5\n31.5\t40\n63\t100")
+                .hint_text(HINT)
                 .font(egui::TextStyle::Monospace)
                 .desired_rows(9)
                 .desired_width(f32::INFINITY);
             let field = ui.add(field);
             named(&field, "Table", &form.table);
             takes_the_keys_at_first(ui, &field);
-            field.on_hover_text("Ctrl+V pastes what was copied elsewhere");
+            // No hover text: it would lie over the fields below.
+            described(&field, || {
+                "Ctrl+V pastes what was copied elsewhere".to_owned()
+            });
         });
     egui::Grid::new("paste").num_columns(2).show(ui, |ui| {
         ui.label("Unit of the sizes");

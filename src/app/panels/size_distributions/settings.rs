@@ -10,11 +10,12 @@ use crate::state::State;
 use crate::units::LengthUnit;
 
 /// The units that sizes are wanted in.
-const UNITS: [LengthUnit; 4] = [
+const UNITS: [LengthUnit; 5] = [
     LengthUnit::Millimetre,
     LengthUnit::Centimetre,
     LengthUnit::Metre,
     LengthUnit::Inch,
+    LengthUnit::Foot,
 ];
 
 /// Draws the fields.
@@ -27,6 +28,8 @@ pub(super) fn settings(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) 
         .show(ui, |ui| {
             ui.label("Sizes in");
             ui.horizontal(|ui| {
+                // Closer together: the column is as wide as they are.
+                ui.spacing_mut().item_spacing.x = 2.0;
                 for unit in UNITS {
                     let chosen = settings.unit == unit;
                     let button = ui.selectable_label(chosen, unit.symbol());
