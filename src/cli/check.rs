@@ -7,10 +7,10 @@ use clap::Args;
 use super::Answer;
 use super::flight_arguments::{FlightArguments, MemoryArguments};
 use super::outputs::{OutputArguments, Outputs};
-use crate::exports::ScaleReport;
+use crate::exports::{PhotoLine, ScaleReport};
 use crate::fault::{Fault, one_line};
 use crate::files::CHECK_MARK;
-use crate::flight::{Doubt, Limits, PhotoReview, Review};
+use crate::flight::{Doubt, Limits, Review};
 use crate::formats::FileError;
 use crate::jobs::Progress;
 use crate::opening::{self, Colours, Opened};
@@ -115,7 +115,8 @@ fn look_at(
         let together = compared.together.iter().find(|(of, _)| *of == index);
         let together = together.map(|(_, together)| together.in_words());
         // A sentence that many photos have does not name them all.
-        let reason = has_reason(&photo).then(|| "see below".to_owned());
+        let reason = PhotoLine::of(photo, index).why_not_trusted();
+        let reason = reason.map(|_| "see below".to_owned());
         let said = [has_colours.then_some(said), together, reason];
         let said: Vec<String> = said.into_iter().flatten().collect();
         if !said.is_empty() {
@@ -140,17 +141,6 @@ fn look_at(
         warnings,
         review: Some(review),
     })
-}
-
-/// Whether there is a reason below the table not to trust a photo; that the model has no unit is said of the flight.
-fn has_reason(photo: &PhotoReview<'_>) -> bool {
-    let settled = photo.settled().filter(|_| !photo.doubts.is_empty());
-    let said = match settled {
-        Some(_) => photo.reasons(),
-        None => photo.notes(),
-    };
-    let of_unit = Doubt::UnitUnknown.to_string();
-    said.iter().any(|sentence| *sentence != of_unit)
 }
 
 /// Into a file go the warnings, too: they are what one looks for.

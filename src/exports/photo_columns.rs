@@ -419,7 +419,7 @@ impl PhotoColumn {
     }
 
     /// How sure its scale is; `None` of what is no scale, and where nobody knows.
-    fn interval_of(&self, line: &PhotoLine<'_>) -> Option<scale::Interval> {
+    pub fn interval_of(&self, line: &PhotoLine<'_>) -> Option<scale::Interval> {
         let of: fn(&Uncertainty) -> Option<scale::Interval> = match self.csv? {
             "top" => |u| u.top,
             "bottom" => |u| u.bottom,

@@ -122,22 +122,7 @@ impl<'a> ScaleReport<'a> {
     /// Why photos are not trusted, likewise: all reasons for doubt with the verdict, or what fell back or failed
     /// where nobody has settled one yet.
     pub fn reasons(&self) -> Vec<Noted> {
-        self.grouped(|line| {
-            let photo = &line.photo;
-            let Some(verdict) = photo.settled().filter(|_| !photo.doubts.is_empty()) else {
-                return notes(line);
-            };
-            let reasons: Vec<String> = without_unit(photo.reasons()).collect();
-            let (verdict, reasons) = (verdict.to_string(), reasons.join("; "));
-            if reasons.is_empty() {
-                return None;
-            }
-            // That there is no scale is verdict and reason.
-            Some(match reasons.starts_with(&verdict) {
-                true => reasons,
-                false => format!("{verdict}: {reasons}"),
-            })
-        })
+        self.grouped(|line| line.why_not_trusted())
     }
 
     /// What to do where half of the photos or more look beyond the surface; `None` elsewhere.
@@ -256,6 +241,25 @@ impl<'a> PhotoLine<'a> {
             to_type: false,
             scale_objects: &[],
         }
+    }
+
+    /// Why it is not trusted, in one sentence; `None` where nothing is said against it. That the model has no unit is
+    /// said of the flight.
+    pub fn why_not_trusted(&self) -> Option<String> {
+        let photo = &self.photo;
+        let Some(verdict) = photo.settled().filter(|_| !photo.doubts.is_empty()) else {
+            return notes(self);
+        };
+        let reasons: Vec<String> = without_unit(photo.reasons()).collect();
+        let (verdict, reasons) = (verdict.to_string(), reasons.join("; "));
+        if reasons.is_empty() {
+            return None;
+        }
+        // That there is no scale is verdict and reason.
+        Some(match reasons.starts_with(&verdict) {
+            true => reasons,
+            false => format!("{verdict}: {reasons}"),
+        })
     }
 
     /// Pixels per unit along the edges.

@@ -110,7 +110,7 @@ pub(crate) fn set_sizes_from_files(
         if let (None, Some(photo)) = (size, first) {
             let why = why.unwrap_or_else(|| match folder.folder {
                 Some(path) => match folder.in_several(&[photo.as_str()]) {
-                    Some(several) => several.what,
+                    Some(several) => format!("{}: {several}", path.display()),
                     None => format!("there is no such image file in {}", path.display()),
                 },
                 None => "there is no such image file".to_owned(),

@@ -38,9 +38,8 @@ fn leave_out(state: &State) -> Option<Command> {
 pub(super) fn accept(state: &State) -> Option<Command> {
     let open = state.reviewed_flight()?;
     let (_, photo) = open.selected_review()?;
-    // Nothing is to be accepted of a photo that goes along by itself.
-    let is_asked = photo.is_doubtful() || photo.decision.is_some();
-    let can = is_asked && open.why_not_accepted(&photo).is_none();
+    // Nothing is to be accepted of a photo that goes along by itself: Enter in its note keeps what was decided.
+    let can = photo.is_doubtful() && open.why_not_accepted(&photo).is_none();
     can.then(|| reviewed(state, ReviewStep::Accept)).flatten()
 }
 
@@ -89,7 +88,7 @@ actions! {
     }
     WRITE_NOTE {
         label: "Write the note",
-        hover: "Type why the photo is accepted or left out; Enter accepts with it",
+        hover: "Type why the photo is accepted or left out; Enter accepts a doubtful one with it",
         shortcut: keys(Modifiers::NONE, Key::W),
         command: |state| reviewed(state, ReviewStep::WriteNote),
     }

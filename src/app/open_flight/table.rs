@@ -96,9 +96,9 @@ impl Counts {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Typical {
     column: &'static PhotoColumn,
-    /// The median: pixels per world unit of scales, else world units.
+    /// The lower median: pixels per world unit of scales, else world units.
     value: f64,
-    /// The median of half their intervals; `None` where nobody knows any.
+    /// The lower median of half their intervals; `None` where nobody knows any.
     half: Option<f64>,
 }
 
@@ -116,9 +116,9 @@ impl Typical {
     }
 
     fn of(column: &'static PhotoColumn, rows: &[Row<'_>]) -> Option<Self> {
-        let value = median(rows.iter().filter_map(|row| number(column, &row.line)))?;
+        let value = lower_median(rows.iter().filter_map(|row| number(column, &row.line)))?;
         let halves = rows.iter().filter_map(|row| half(column, &row.line));
-        let half = median(halves.filter(|half| is_width(half / value.abs() * 100.0)));
+        let half = lower_median(halves.filter(|half| is_width(half / value.abs() * 100.0)));
         Some(Self {
             column,
             value,
@@ -150,20 +150,13 @@ fn number(column: &PhotoColumn, line: &PhotoLine<'_>) -> Option<f64> {
 
 /// Half the interval of a scale.
 fn half(column: &PhotoColumn, line: &PhotoLine<'_>) -> Option<f64> {
-    let sure = line.uncertainty()?;
-    let ends = match column.name {
-        "Top" => sure.top,
-        "Bottom" => sure.bottom,
-        "Fitted top" => sure.fitted_top,
-        "Fitted bottom" => sure.fitted_bottom,
-        _ => None,
-    }?;
+    let ends = column.interval_of(line)?;
     let half = (ends.high - ends.low) / 2.0;
     half.is_finite().then_some(half)
 }
 
-/// The number in the middle; of two the smaller one, which has more decimals.
-fn median(numbers: impl Iterator<Item = f64>) -> Option<f64> {
+/// The number in the middle, which is one of them; of two in the middle the smaller one, which asks for more decimals.
+fn lower_median(numbers: impl Iterator<Item = f64>) -> Option<f64> {
     let mut all: Vec<f64> = numbers.collect();
     all.sort_by(f64::total_cmp);
     let last = all.len().checked_sub(1)?;
@@ -349,11 +342,11 @@ mod tests {
         let whole = typical(None).text(12_345.6, 1.0);
         assert_eq!(whole.as_deref(), Some("12346"));
         assert_eq!(
-            median([3.0, 1.0, 2.0, 4.0].into_iter()),
+            lower_median([3.0, 1.0, 2.0, 4.0].into_iter()),
             Some(2.0),
             "the smaller of two"
         );
-        assert_eq!(median(std::iter::empty()), None);
+        assert_eq!(lower_median(std::iter::empty()), None);
     }
 
     #[test]

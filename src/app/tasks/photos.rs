@@ -117,9 +117,7 @@ impl State {
                     },
                     time,
                 };
-                if thumbnail.colours.fits() {
-                    together.fits(index);
-                }
+                together.take_colours(index, &(&thumbnail.colours).into());
                 // Waits until the window has taken some; a cancelled job gives up.
                 if !steps.offer(|state: &mut Self| state.take_thumbnail(thumbnail), progress) {
                     return Vec::new();

@@ -1,6 +1,6 @@
 //! All flights of a season: one line of progress for each, the tables, the exit status.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use std::process::ExitCode;
@@ -192,6 +192,7 @@ impl Batch {
     fn run(&self, flights: &[SeasonFlight], progress: &Progress) -> Result<Vec<Ended>, String> {
         let all = flights.len();
         let done = Cell::new(0);
+        let away = RefCell::new(TakenAway::new());
         let on_event = |event: Event<'_>| match event {
             Event::Begun(_) | Event::At(..) => {}
             Event::TakenBack(flight) => {
@@ -202,6 +203,7 @@ impl Batch {
             }
             Event::Ended(ended) => {
                 done.set(done.get() + 1);
+                add_taken_away(&mut away.borrow_mut(), ended);
                 say(&format!("[{}/{all}] {}", done.get(), self.line(ended)));
                 if self.format == BatchFormat::Jsonl
                     && let Ok(line) = season_json_line(&ended.row, self.unit)
@@ -217,9 +219,10 @@ impl Batch {
             &on_event,
             progress,
         );
-        let ended = ended.map_err(|fault| fault.to_string())?;
-        taken_away(&ended).iter().for_each(|line| say(line));
-        Ok(ended)
+        // Also where it was interrupted: what finished flights took away is gone.
+        let lines = taken_away(away.into_inner());
+        lines.iter().for_each(|line| say(line));
+        ended.map_err(|fault| fault.to_string())
     }
 
     /// A flight in a line.
@@ -256,14 +259,19 @@ impl Batch {
     }
 }
 
-/// What of earlier runs is gone, a line for each file or folder, with how many flights it was of.
-fn taken_away(ended: &[Ended]) -> Vec<String> {
-    let mut all: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
-    for (kind, files) in ended.iter().flat_map(|ended| &ended.taken_away) {
-        let (flights, all_files) = all.entry(kind).or_default();
+/// Of each file or folder of earlier runs that is gone: of how many flights, and how many files.
+type TakenAway = BTreeMap<String, (usize, usize)>;
+
+fn add_taken_away(all: &mut TakenAway, ended: &Ended) {
+    for (kind, files) in &ended.taken_away {
+        let (flights, all_files) = all.entry(kind.clone()).or_default();
         *flights += 1;
         *all_files += files;
     }
+}
+
+/// What of earlier runs is gone, a line for each file or folder, with how many flights it was of.
+fn taken_away(all: TakenAway) -> Vec<String> {
     let lines = all.into_iter().map(|(kind, (flights, files))| {
         let files = match (kind.ends_with('/'), files) {
             (false, _) => String::new(),

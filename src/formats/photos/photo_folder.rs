@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use super::image_names::{is_image, readable};
 use super::photo_size;
 use super::photos_below::{
-    LOOKED_THROUGH, PhotosBelow, folders_of_photos, images_below, is_cameras,
+    LOOKED_THROUGH, PhotosBelow, folders_of_photos, images_below, is_cameras, is_companion,
 };
 use crate::fault::{Fault, first_names};
 use crate::files::{last_segment, open_file, same_name, unreadable_folder};
@@ -32,21 +32,22 @@ impl<'a> PhotoFolder<'a> {
     /// The files of a folder that a package leads to; where it has no images itself, those in the folders that a camera made in it.
     /// Others may be of other flights, whose photos have the same names.
     pub fn new(folder: Option<&'a Path>) -> Self {
-        Self::with(folder, |card| {
-            let below = PhotosBelow::read(card).unwrap_or_default();
-            below.photos.into_iter().map(|(_, path)| path).collect()
-        })
+        Self::with(folder, on_card)
     }
 
-    /// The files of a folder that somebody named for the photos; where it has no images itself, those in all folders right below it.
+    /// The files of a folder that somebody named for the photos; where it has no images itself, those in all folders right below it, or,
+    /// of very many files, in those that a camera made.
     pub fn named(folder: Option<&'a Path>) -> Self {
-        Self::with(folder, |folder| images_below(folder, LOOKED_THROUGH))
+        Self::with(folder, |folder| {
+            images_below(folder, LOOKED_THROUGH).unwrap_or_else(|| on_card(folder))
+        })
     }
 
     fn with(folder: Option<&'a Path>, below: impl FnOnce(&Path) -> Vec<PathBuf>) -> Self {
         let entries = folder.and_then(|folder| std::fs::read_dir(folder).ok());
         let entries = entries.into_iter().flatten().flatten();
-        let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+        let paths = entries.map(|entry| entry.path());
+        let mut paths: Vec<PathBuf> = paths.filter(|path| !is_companion(path)).collect();
         let mut within = BTreeMap::new();
         if let Some(folder) = folder
             && !paths.iter().any(|path| is_image(&name_of(path)))
@@ -182,7 +183,7 @@ impl<'a> PhotoFolder<'a> {
             ),
             (0, _, true) => "no images, and so".to_owned(),
             (0, _, false) => format!(
-                "no images itself (but folders within it: {}), and",
+                "no images itself (but folders within it, which were not looked into: {}), and so",
                 first_names(&not_looked_into)
             ),
             (n, ..) => format!("{n} images ({}, ...), but", there.join(", ")),
@@ -203,6 +204,12 @@ impl<'a> PhotoFolder<'a> {
     pub fn size_of(&self, photo: &str) -> Option<Result<(u32, u32), Fault>> {
         self.find(photo).map(|path| size_of_file(&path))
     }
+}
+
+/// The photos in the folders that a camera made in a folder.
+fn on_card(card: &Path) -> Vec<PathBuf> {
+    let below = PhotosBelow::read(card).unwrap_or_default();
+    below.photos.into_iter().map(|(_, path)| path).collect()
 }
 
 /// The name of a file.

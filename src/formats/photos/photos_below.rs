@@ -90,7 +90,7 @@ pub(crate) fn is_photo(path: &Path) -> bool {
 
 /// Whether macOS put a file beside another one, on a card or a server that cannot keep what it knows of that: of the same name behind
 /// "._", and no photo (AppleDouble, RFC 1740).
-fn is_companion(path: &Path) -> bool {
+pub(crate) fn is_companion(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default();
     name.to_string_lossy().starts_with("._")
 }
@@ -141,8 +141,8 @@ pub(crate) fn folders_of_photos(folder: &Path) -> Vec<String> {
 }
 
 /// The images in the folders right below a folder, by their paths; folders that are hidden (of thumbnails, of what was deleted) are
-/// passed over. None at all where there are more than `most` files: of the rest one could be called as another one is.
-pub(crate) fn images_below(folder: &Path, most: usize) -> Vec<PathBuf> {
+/// passed over. `None` where there are more than `most` files: of the rest one could be called as another one is.
+pub(crate) fn images_below(folder: &Path, most: usize) -> Option<Vec<PathBuf>> {
     let entries = |folder: &Path| fs::read_dir(folder).into_iter().flatten().flatten();
     let name = |entry: &fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
     let within = entries(folder).filter(|entry| !name(entry).starts_with('.'));
@@ -155,15 +155,15 @@ pub(crate) fn images_below(folder: &Path, most: usize) -> Vec<PathBuf> {
         for entry in entries(&folder) {
             seen += 1;
             if seen > most {
-                return Vec::new();
+                return None;
             }
-            if is_image(&name(&entry)) {
+            if is_image(&name(&entry)) && !is_companion(&entry.path()) {
                 images.push(entry.path());
             }
         }
     }
     images.sort();
-    images
+    Some(images)
 }
 
 /// Whether a folder is called as cameras call theirs: by three digits and five letters (the rule of memory cards, DCF 2.0:
@@ -188,6 +188,7 @@ mod tests {
             "b/2.JPG",
             "a/1.tif",
             "a/notes.txt",
+            "b/._2.JPG",
             ".thumbnails/3.jpg",
             "a/deeper/4.jpg",
             "own.jpg",
@@ -197,10 +198,11 @@ mod tests {
             fs::write(path, "").unwrap();
         }
         let expected = ["a/1.tif", "b/2.JPG"].map(|name| folder.path().join(name));
-        // Two images, a text and a folder.
-        assert_eq!(images_below(folder.path(), 4), expected);
-        assert!(images_below(folder.path(), 3).is_empty());
-        assert!(images_below(&folder.path().join("none"), 4).is_empty());
+        // Two images, what macOS keeps of one, a text and a folder.
+        assert_eq!(images_below(folder.path(), 5), Some(expected.to_vec()));
+        assert_eq!(images_below(folder.path(), 4), None);
+        let none = folder.path().join("none");
+        assert_eq!(images_below(&none, 4), Some(Vec::new()));
     }
 
     #[test]

@@ -58,7 +58,7 @@ pub(super) fn triangulated(
         reconstruction.photos.iter().map(|p| p.name.as_str()),
         &listed,
     );
-    let folder = PhotoFolder::named(folder);
+    let folder = PhotoFolder::new(folder);
     let mut unknown: Vec<&str> = listed
         .iter()
         .copied()

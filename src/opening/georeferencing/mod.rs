@@ -132,7 +132,7 @@ pub fn georeference(
     if let Some(folder) = &request.photos {
         let photos = project.reconstruction.photos.iter();
         let names: Vec<&str> = photos.map(|photo| photo.name.as_str()).collect();
-        let checked = PhotoFolder::named(Some(folder)).check(&names);
+        let checked = PhotoFolder::new(Some(folder)).check(&names);
         checked.map_err(|fault| FileError::new(folder, fault))?;
     }
     let photos = request.photos.clone().or(project.photos);

@@ -61,7 +61,7 @@ fn with_good_matches(
     }
     if !model.sizes.are_known() {
         // Which photos are left out for it is said where the flight is opened.
-        let (photos, mut left_out) = (PhotoFolder::named(photos), Vec::new());
+        let (photos, mut left_out) = (PhotoFolder::new(photos), Vec::new());
         set_sizes_from_files(&mut model, &photos, |_| None, &mut left_out)
             .map_err(|_| "the sizes of its photos are not known (give their folder)".to_owned())?;
     }

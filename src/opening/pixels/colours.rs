@@ -27,11 +27,6 @@ impl From<&Colours> for ColoursFound {
 }
 
 impl Colours {
-    /// Whether they were compared, and nothing speaks against the photo.
-    pub fn fits(&self) -> bool {
-        ColoursFound::from(self) == ColoursFound::NothingAgainst
-    }
-
     /// What they, or the file that they were to be read from, say against the photo.
     pub fn doubt(&self) -> Option<Doubt> {
         let agreement = match self {

@@ -67,9 +67,7 @@ pub fn compare_pixels(
             None => together.give_up(index),
         }
         if !wants_colours {
-            if evidence.colours == ColoursFound::NothingAgainst {
-                together.fits(index);
-            }
+            together.take_colours(index, &evidence.colours);
             continue;
         }
         let found = match read {
@@ -78,9 +76,7 @@ pub fn compare_pixels(
             Some(Some(Err(error))) => Colours::Unreadable(error.fault.to_string()),
             Some(Some(Ok(_))) => Colours::of_photo(flight, index, small.as_ref()),
         };
-        if found.fits() {
-            together.fits(index);
-        }
+        together.take_colours(index, &(&found).into());
         colours.push((index, found));
     }
     Ok(ComparedPixels {

@@ -6,7 +6,7 @@ use image::RgbImage;
 
 use super::pairs::pairs;
 use crate::fault::Fault;
-use crate::flight::{Doubt, Flight, Outcome, TogetherFound};
+use crate::flight::{ColoursFound, Doubt, Flight, Outcome, TogetherFound};
 use crate::geometry::median;
 use crate::jobs::Progress;
 use crate::photo_files::PhotoFile;
@@ -30,7 +30,8 @@ pub enum Together {
         /// At so many times its distance, their median.
         factor: f64,
     },
-    /// It does not tell, or is beside none; those of the flight that were compared are alike at no distance of the surface.
+    /// It does not tell, or is beside none; most that were compared are alike with those beside them at no distance of the surface, and
+    /// none sees it anywhere.
     OthersNowhere {
         /// So many.
         photos: usize,
@@ -144,6 +145,8 @@ pub struct PhotosTogether {
     sights: Vec<Option<PairSight>>,
     /// Those whose colours are the surface's.
     fitting: BTreeSet<usize>,
+    /// Those without a file: nothing can be said of what they show.
+    absent: BTreeSet<usize>,
 }
 
 impl PhotosTogether {
@@ -162,11 +165,15 @@ impl PhotosTogether {
             true => Vec::new(),
             false => pairs(flight, outcomes, files, progress)?,
         };
+        let absent = files.iter().enumerate();
+        let absent = absent.filter(|(_, file)| file.path.is_none());
+        let absent = absent.map(|(photo, _)| photo);
         Ok(Self {
             sights: vec![None; pairs.len()],
             pairs,
             kept: BTreeMap::new(),
             fitting: BTreeSet::new(),
+            absent: absent.collect(),
         })
     }
 
@@ -207,9 +214,12 @@ impl PhotosTogether {
         self.forget_done();
     }
 
-    /// A photo's colours are those of the surface where it lies: where it is like another one at no distance, that one is to blame.
-    pub fn fits(&mut self, photo: usize) {
-        self.fitting.insert(photo);
+    /// What a photo's colours say: where they are those of the surface, and it is like another one at no distance, that one is to
+    /// blame.
+    pub fn take_colours(&mut self, photo: usize, colours: &ColoursFound) {
+        if *colours == ColoursFound::NothingAgainst {
+            self.fitting.insert(photo);
+        }
     }
 
     /// Nothing comes of a photo: nobody waits for it any more.
@@ -271,6 +281,7 @@ impl PhotosTogether {
                         sight,
                     }
                 }
+                _ if self.absent.contains(&photo) => return None,
                 _ => Together::OthersNowhere { photos: nowhere? },
             };
             Some((photo, together))
@@ -293,18 +304,18 @@ fn all_elsewhere<'a>(sights: impl Iterator<Item = &'a PairSight>) -> Option<(usi
     Some((factors.len(), median(&mut factors)?))
 }
 
-/// How many photos are alike with those beside them at no distance, where none tells where the surface is: then nothing speaks for the
-/// others, either.
+/// How many photos are alike with those beside them at no distance, where they are more than those that do not tell, and none tells where
+/// the surface is: then nothing speaks for the others, either.
 fn all_nowhere<'a>(sights: impl Iterator<Item = &'a PairSight>) -> Option<usize> {
-    let mut strangers = 0;
+    let (mut strangers, mut unclear) = (0, 0);
     for sight in sights {
         match sight {
             PairSight::Nowhere => strangers += 1,
-            PairSight::Unclear => {}
+            PairSight::Unclear => unclear += 1,
             PairSight::There(_) | PairSight::Partly(_) | PairSight::Elsewhere(_) => return None,
         }
     }
-    (strangers > 0).then_some(strangers)
+    (strangers > unclear).then_some(strangers)
 }
 
 /// Two photos that are alike at no distance may be of other light, or of leaves and water. They speak against themselves where others of
@@ -435,6 +446,7 @@ mod tests {
         assert_eq!(of(&[stranger, unclear, stranger, stranger]), Some(3));
         assert_eq!(of(&[stranger, there, stranger, stranger]), None);
         assert_eq!(of(&[unclear, unclear]), None);
+        assert_eq!(of(&[stranger, unclear, unclear]), None);
     }
 
     /// A photo that does not tell is no surer than those of its flight that do.

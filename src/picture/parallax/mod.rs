@@ -12,6 +12,8 @@
 //! sweep        how well they match in another photo, by the factor (plane sweep, Collins 1996, with one plane a patch)
 //! ```
 //!
+//! Brightness and places in the small photo are 32-bit floats, a ten thousandth of a pixel: no number that anybody reads is one.
+//!
 //! What both photos have wrong in the same way (the unit, a flight moved as a whole over a flat floor) no two photos see.
 
 mod patches;

@@ -108,7 +108,7 @@ impl SmallPhoto {
 fn fours(luma: &[u8], width: usize) -> Vec<[u8; 4]> {
     let at = |place: usize| luma.get(place).copied().unwrap_or(0);
     let four = |place: usize| {
-        let is_last = (place + 1) % width.max(1) == 0;
+        let is_last = (place + 1).is_multiple_of(width.max(1));
         let four = [place, place + 1, place + width, place + width + 1].map(at);
         if is_last || four.contains(&0) {
             NOTHING
@@ -151,5 +151,14 @@ mod tests {
         // Beside the black one, on the last row, beyond the first column.
         assert_eq!([at(1.75, 0.75), at(0.75, 1.5), at(0.25, 0.75)], [None; 3]);
         assert_eq!(at(f32::NAN, 1.0), None);
+        assert_eq!(photo.placed(), (1.0, 0.5));
+        // Reduced to half, the second pixel's centre of four lies at 1.5 of these, 0.75 of the small ones, a quarter behind the first's.
+        let twice = Camera {
+            width: 1024,
+            height: 768,
+            ..camera
+        };
+        let (shrunk, half) = SmallPhoto::of(&RgbImage::new(512, 384), &twice).placed();
+        assert_eq!(1.5 * shrunk - half, 0.25);
     }
 }

@@ -41,8 +41,9 @@ const MUCH: f64 = 0.15;
 /// more all did.
 const FEWEST_OF_NONE: usize = 60;
 
-/// The best of some hundred wrong factors has this mean correlation times the root of the patches: of 66 to 800 patches of other photos none
-/// was above 1.0, of right ones none below 1.6.
+/// A match that is not clear is one of chance below this mean correlation times the root of its patches: of other photos the best of some
+/// hundred factors were below 1.0 (66 to 96 patches) and below 1.4 (126 and more, where [`LEAST_MATCH`] of all patches is the limit), right
+/// ones with 50 and more patches were above 1.6, and clear.
 const BY_CHANCE: f64 = 1.2;
 
 /// What both photos show is looked at in so many parts along each side, where patches match or do not.

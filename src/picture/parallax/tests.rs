@@ -258,7 +258,7 @@ fn a_wrong_focal_length_is_a_wrong_distance() {
 /// A close one, half beside what the other shows, shows an eighth of it: that way round there are few patches, and what the other way round
 /// is like nothing is not excused by them.
 #[test]
-fn a_close_photo_of_other_rock_is_like_nothing() {
+fn few_patches_that_are_like_nothing_excuse_nothing() {
     let camera = camera();
     let poses = [
         Pose::from_tilt_pan(DVec3::new(-1.5, 0.0, 10.0), [90.0, 0.0]),

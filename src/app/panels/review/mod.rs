@@ -199,7 +199,10 @@ fn decide(
             ui,
             commands,
         );
-        let goes_by_itself = "Nothing speaks against it: there is nothing to accept";
+        let goes_by_itself = match left_out {
+            true => "Nothing speaks against it: taken back, it goes along",
+            false => "Nothing speaks against it: there is nothing to accept",
+        };
         let why_not = open.why_not_accepted(&reviewed);
         accept.on_disabled_hover_text(why_not.unwrap_or(goes_by_itself));
         button(

@@ -27,7 +27,7 @@ use glam::DVec3;
 
 use crate::control::{ControlList, ControlPoint};
 use crate::fault::{Fault, first_names, one_line};
-use crate::files::{FLIGHT_MARK, FileError, read_text};
+use crate::files::{FLIGHT_MARK, FileError, read_small, read_text, text_from_bytes};
 use crate::packages::odm::crs_from_text;
 use crate::photos::image_names::{Ending, is_called};
 use crate::photos::photo_metadata;
@@ -77,11 +77,13 @@ pub enum KnownPlaces {
     OfPhotos(PositionList),
 }
 
-/// Reads a list of known places; `None` of what is none, or has faults.
+/// Reads a list of known places; `None` of what is none, or has faults. What it is asked of may be anything: a film, a cloud.
 pub fn read_known_places(path: &Path) -> Option<KnownPlaces> {
-    let text = read_text(path).ok()?;
-    let points = control_points_from_text(&text).ok();
-    let positions = || Some(KnownPlaces::OfPhotos(positions_from_text(&text).ok()?));
+    const MOST: u64 = 16 << 20;
+    let bytes = read_small(path, MOST, "list of places", "").ok()?;
+    let text = text_from_bytes(&bytes).ok()?;
+    let points = control_points_from_text(text).ok();
+    let positions = || Some(KnownPlaces::OfPhotos(positions_from_text(text).ok()?));
     match points {
         Some(list) if !are_of_photos(&list) => Some(KnownPlaces::ControlPoints(list)),
         _ => positions(),

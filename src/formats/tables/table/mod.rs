@@ -10,7 +10,7 @@
 //!   fault, because a decimal comma may have shifted it there.
 //! - Numbers may have a decimal comma where the table shows that it is one and not a thousands
 //!   separator ([`Table::number`]). Thousands may stand apart, or be parted by points or commas where the
-//!   table shows that the other sign is the decimal one.
+//!   table shows that the other sign is the decimal one, and so does their column or the number itself.
 
 mod cell_number;
 mod encoding;
@@ -50,9 +50,52 @@ pub struct Table {
     /// thousands that the other sign parts.
     decimal_comma: bool,
     decimal_point: bool,
-    /// Of each column, whether a point in it may as well stand behind thousands: between semicolons, where no point of the
-    /// table is surely decimal, and with whole hundreds in the column. Empty where no column is such a one.
-    maybe_thousands: Vec<bool>,
+    /// Whether a point may as well stand behind thousands, in a column with hundreds: between semicolons, where no point of the
+    /// table is surely decimal.
+    points_may_part: bool,
+    /// One for each column of the header.
+    columns: Vec<ColumnSigns>,
+}
+
+/// What the numbers of a column show of its points and commas.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+struct ColumnSigns {
+    /// As of the table, of this column alone.
+    decimal_comma: bool,
+    decimal_point: bool,
+    /// Whether there are whole numbers of 100 or more.
+    hundreds: bool,
+}
+
+impl ColumnSigns {
+    /// Looks for a comma or point that can only be decimal, and for hundreds.
+    fn look_at(&mut self, cell: &str) {
+        let (number, _) = number_text(cell);
+        self.hundreds |= number.parse::<u32>().is_ok_and(|number| number >= 100);
+        let signs = [',', '.'].map(|sign| number.matches(sign).count());
+        if signs[0] + signs[1] == 1 && !may_be_thousands(&number) {
+            self.decimal_comma |= signs[0] == 1;
+            self.decimal_point |= signs[1] == 1;
+        }
+        // Behind thousands: "1.250,0".
+        if signs[0] > 0
+            && signs[1] > 0
+            && let Some((separator, _)) = without_separators(&number)
+        {
+            let decimal = other_sign(separator);
+            self.decimal_comma |= decimal == ',';
+            self.decimal_point |= decimal == '.';
+        }
+    }
+
+    /// Whether its own numbers say that this sign parts thousands: another column may be written otherwise.
+    fn are_parted_by(self, separator: char) -> bool {
+        let is_other_decimal = match separator {
+            '.' => self.decimal_comma,
+            _ => self.decimal_point,
+        };
+        is_other_decimal || self.hundreds
+    }
 }
 
 /// A line of a table, behind its header.
@@ -218,12 +261,11 @@ impl Table {
             rows,
             decimal_comma: false,
             decimal_point: false,
-            maybe_thousands: Vec::new(),
+            points_may_part: false,
+            columns: Vec::new(),
         };
         table.look_for_decimal_signs();
-        if semicolons && !table.decimal_point {
-            table.look_for_hundreds();
-        }
+        table.points_may_part = semicolons && !table.decimal_point;
         Ok(table)
     }
 
@@ -270,9 +312,7 @@ impl Table {
     /// The table without one of its columns.
     pub(crate) fn without_column(mut self, column: usize) -> Self {
         self.header.remove(column);
-        if column < self.maybe_thousands.len() {
-            self.maybe_thousands.remove(column);
-        }
+        self.columns.remove(column);
         for row in &mut self.rows {
             let cells = row.cells.iter().enumerate();
             let kept = cells.filter(|(place, _)| *place != column);
@@ -373,7 +413,7 @@ impl Table {
             let what = format!("column {name}: '{}' {what}", shown(cell));
             Err(Fault::at(row.line, what, remedy))
         };
-        if let Some(whole) = self.without_thousands(number) {
+        if let Some(whole) = self.without_thousands(number, column) {
             let parsed = whole.replace(',', ".").parse::<f64>().ok();
             let Some(parsed) = parsed.filter(|number| number.is_finite()) else {
                 return Err(self.no_number(row, column));
@@ -384,12 +424,13 @@ impl Table {
             repairs.thousands_parted(row.line, cell, parsed);
             return Ok(Some((parsed, rest.trim_start())));
         }
+        let has_hundreds = (self.columns.get(column)).is_some_and(|signs| signs.hundreds);
         let plain = "write decimals with a point, and nothing between thousands";
         let ambiguous = "may have a decimal sign or a separator of thousands";
         let parsed = match (number.matches(',').count(), number.matches('.').count()) {
             (0, 1)
                 if may_be_thousands(number)
-                    && (self.decimal_comma || self.maybe_thousands.get(column) == Some(&true)) =>
+                    && (self.decimal_comma || self.points_may_part && has_hundreds) =>
             {
                 return fault(ambiguous, plain);
             }
@@ -415,21 +456,26 @@ impl Table {
         }
     }
 
-    /// A number without what parts its thousands, where the table says that the other sign is the decimal one, and this one never is.
-    fn without_thousands(&self, number: &str) -> Option<String> {
+    /// A number without what parts its thousands, where the table says that the other sign is the decimal one, and this one never is,
+    /// and the number itself or its column says so, too: metres with points may stand beside percents with commas.
+    fn without_thousands(&self, number: &str, column: usize) -> Option<String> {
         let (separator, whole) = without_separators(number)?;
         let is_settled = match separator {
             '.' => self.decimal_comma && !self.decimal_point,
             _ => self.decimal_point && !self.decimal_comma,
         };
-        is_settled.then_some(whole)
+        let says_so = || {
+            let signs = self.columns.get(column);
+            signs.is_some_and(|signs| signs.are_parted_by(separator))
+        };
+        (is_settled && (!may_be_thousands(number) || says_so())).then_some(whole)
     }
 
     /// What one of the last digit shown of a cell's number is: 0.1 of "12.3", 1 of "58". `None` where it is no plain number.
     pub(crate) fn last_digit(&self, row: &Row, column: usize) -> Option<f64> {
         let cell = row.cell(column);
         let (number, _) = number_text(cell);
-        match self.without_thousands(&number) {
+        match self.without_thousands(&number, column) {
             Some(whole) => last_digit(&whole),
             None => last_digit(cell),
         }
@@ -451,34 +497,15 @@ impl Table {
     }
 
     /// Looks for numbers whose comma or point can only be decimal.
-    fn look_for_hundreds(&mut self) {
-        let is_hundreds = |cell: &str| cell.parse::<u32>().is_ok_and(|number| number >= 100);
-        self.maybe_thousands = vec![false; self.header.len()];
-        for row in &self.rows {
-            for (maybe, cell) in self.maybe_thousands.iter_mut().zip(&row.cells) {
-                *maybe |= is_hundreds(cell);
-            }
-        }
-    }
-
     fn look_for_decimal_signs(&mut self) {
-        for cell in self.rows.iter().flat_map(|row| row.cells.iter()) {
-            let (number, _) = number_text(cell);
-            let signs = [',', '.'].map(|sign| number.matches(sign).count());
-            if signs[0] + signs[1] == 1 && !may_be_thousands(&number) {
-                self.decimal_comma |= signs[0] == 1;
-                self.decimal_point |= signs[1] == 1;
-            }
-            // Behind thousands: "1.250,0".
-            if signs[0] > 0
-                && signs[1] > 0
-                && let Some((separator, _)) = without_separators(&number)
-            {
-                let decimal = other_sign(separator);
-                self.decimal_comma |= decimal == ',';
-                self.decimal_point |= decimal == '.';
+        self.columns = vec![ColumnSigns::default(); self.header.len()];
+        for row in &self.rows {
+            for (signs, cell) in self.columns.iter_mut().zip(&row.cells) {
+                signs.look_at(cell);
             }
         }
+        self.decimal_comma = self.columns.iter().any(|signs| signs.decimal_comma);
+        self.decimal_point = self.columns.iter().any(|signs| signs.decimal_point);
     }
 }
 

@@ -128,6 +128,16 @@ fn thousands_that_points_or_commas_part() {
             said_of("'1.250,5' as 1250.5 (3 numbers, first on line 2)")
         ]
     );
+    // Another column does not say it: these may be metres with points beside percents with commas, and the other way round.
+    for [first, second] in [["2.500;88,4", "1.250;60,1"], ["2,500;88.4", "1,250;60.1"]] {
+        let fault = numbers(&format!("size_m;passing\n{first}\n{second}\n")).unwrap_err();
+        let wanted = "may have a decimal sign or a separator of thousands";
+        assert!(fault.what.ends_with(wanted), "{fault}");
+        assert_eq!(fault.line, Some(2));
+    }
+    // Hundreds in the column itself do.
+    let (found, _) = numbers("size_mm;passing\n1,000;88.4\n500;60.1\n").unwrap();
+    assert_eq!(found, [1000.0, 500.0].map(Some));
     let (found, said) = numbers("a;b\n1,250.5;1\n1,000;1\n").unwrap();
     assert_eq!(found, [1250.5, 1000.0].map(Some));
     assert_eq!(
