@@ -483,6 +483,10 @@ mod tests {
             0.01, 0.02, 0.03\t50,Q\n";
         let said = of("Timestamp.MRK", line);
         assert_eq!(said["kind"], "positions");
+        // A mark without its photo, which is no position.
+        let path = folder.path().join("unnamed.txt");
+        fs::write(&path, "EPSG:32633\n500010.1 5000020.2 160.1 100 200\n").unwrap();
+        assert!(info(&path, &Progress::default()).is_err());
         // What is neither is an error as ever.
         let path = folder.path().join("letter.txt");
         fs::write(&path, "Dear all,\nthe blast is at noon, as ever.\n").unwrap();

@@ -83,7 +83,13 @@ pub fn read_known_places(path: &Path) -> Option<KnownPlaces> {
     let bytes = read_small(path, MOST, "list of places", "").ok()?;
     let text = text_from_bytes(&bytes).ok()?;
     let points = control_points_from_text(text).ok();
-    let positions = || Some(KnownPlaces::OfPhotos(positions_from_text(text).ok()?));
+    // Coordinates and pixels without a name begin with a number that is none's.
+    let is_named = |of: &NamedPosition| !(of.name.contains('.') && of.name.parse::<f64>().is_ok());
+    let positions = || {
+        let list = positions_from_text(text).ok()?;
+        let are_named = list.positions.iter().all(is_named);
+        are_named.then_some(KnownPlaces::OfPhotos(list))
+    };
     match points {
         Some(list) if !are_of_photos(&list) => Some(KnownPlaces::ControlPoints(list)),
         _ => positions(),

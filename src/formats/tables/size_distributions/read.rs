@@ -568,8 +568,9 @@ impl Reader<'_> {
         sizes: &[(usize, SizeText)],
         names: Option<usize>,
     ) -> Result<Vec<RawCurve>, Fault> {
-        let sizes = self.sizes_in_names(sizes);
         let taken: Vec<usize> = sizes.iter().map(|(column, _)| *column).collect();
+        self.table.check_numbers_in_names(&taken)?;
+        let sizes = self.sizes_in_names(sizes);
         self.a_line_a_curve(&taken, names, |reader, row| {
             if let Some(called) = names.map(|column| row.cell(column))
                 && matches!(role(called), Role::Retained(_) | Role::PassingMass)

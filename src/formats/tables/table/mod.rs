@@ -471,6 +471,35 @@ impl Table {
         (is_settled && (!may_be_thousands(number) || says_so())).then_some(whole)
     }
 
+    /// Refuses numbers in the names of these columns that all may have thousands, parted by the sign that in the cells is not the
+    /// decimal one: read as decimals they were a thousandth.
+    ///
+    /// # Errors
+    /// With the first of them.
+    pub(crate) fn check_numbers_in_names(&self, columns: &[usize]) -> Result<(), Fault> {
+        let signs = [
+            ('.', self.decimal_comma && !self.decimal_point),
+            (',', self.decimal_point && !self.decimal_comma),
+        ];
+        for (sign, _) in signs.into_iter().filter(|(_, is_other)| *is_other) {
+            let names = columns.iter().filter_map(|column| self.header.get(*column));
+            let mut with = names.filter(|name| number_text(name.trim()).0.contains(sign));
+            let Some(first) = with.next() else { continue };
+            let is_doubtful = |name: &String| may_be_thousands(&number_text(name.trim()).0);
+            if is_doubtful(first) && with.all(is_doubtful) {
+                return Err(Fault::at(
+                    self.header_line,
+                    format!(
+                        "column '{}' may have a decimal sign or a separator of thousands",
+                        shown(first)
+                    ),
+                    "write nothing between thousands, and decimals as the cells do",
+                ));
+            }
+        }
+        Ok(())
+    }
+
     /// What one of the last digit shown of a cell's number is: 0.1 of "12.3", 1 of "58". `None` where it is no plain number.
     pub(crate) fn last_digit(&self, row: &Row, column: usize) -> Option<f64> {
         let cell = row.cell(column);

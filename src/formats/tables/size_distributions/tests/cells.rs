@@ -67,6 +67,30 @@ fn a_first_column_may_be_called_number_sign() {
     );
 }
 
+/// A sieve of 1.000 mm is one of a metre where percents have commas; others of the same table show that points are decimal.
+#[test]
+fn thousands_in_the_names_of_columns_are_refused() {
+    let of = |text: &str| size_distributions(text, &DistributionColumns::default());
+    for (text, named) in [
+        ("photo;1.000 mm;2.000 mm\nA;20,5;100\n", "'1.000 mm'"),
+        ("photo;500 mm;1.000 mm\nA;20,5;100\n", "'1.000 mm'"),
+        ("photo\t1,000 mm\t2,000 mm\nA\t20.5\t100\n", "'1,000 mm'"),
+    ] {
+        let fault = of(text).unwrap_err();
+        assert!(fault.what.contains(named), "{fault}");
+        assert!(fault.what.contains("separator of thousands"), "{fault}");
+    }
+    for (text, largest) in [
+        ("photo;0.500 mm;1.000 mm\nA;20,5;100\n", 1.0),
+        ("photo;1.000 mm;2.000 mm\nA;20.5;100\n", 2.0),
+        ("photo;1,000 mm;2,000 mm\nA;20,5;100\n", 2.0),
+    ] {
+        let (set, _) = of(text).unwrap();
+        let points = set.curves[0].distribution.points();
+        assert_eq!(points.last().map(|point| point[0]), Some(largest), "{text}");
+    }
+}
+
 /// As German Excel writes them, of a table whose other numbers have decimal commas, and of masses that say it themselves.
 #[test]
 fn thousands_may_have_points_where_commas_are_decimal() {
