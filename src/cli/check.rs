@@ -114,10 +114,17 @@ fn look_at(
         warnings.extend(of_pixels.map(|doubt| format!("photo '{name}': {doubt}")));
         let together = compared.together.iter().find(|(of, _)| *of == index);
         let together = together.map(|(_, together)| together.in_words());
+        // Without colours nothing but those beside it speaks for a photo, and nothing does if none is.
+        let is_there = opened.photo_files[index].path.is_some();
+        let is_alone = !has_colours && is_there && together.is_none();
+        let alone = is_alone.then(|| {
+            "compared with nothing: no photo from beside it shows enough of the same rock"
+                .to_owned()
+        });
         // A sentence that many photos have does not name them all.
         let reason = PhotoLine::of(photo, index).why_not_trusted();
         let reason = reason.map(|_| "see below".to_owned());
-        let said = [has_colours.then_some(said), together, reason];
+        let said = [has_colours.then_some(said), together, alone, reason];
         let said: Vec<String> = said.into_iter().flatten().collect();
         if !said.is_empty() {
             // Writing into a text does not fail.

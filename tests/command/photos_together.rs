@@ -82,6 +82,10 @@ fn a_right_surface_is_seen_where_it_is() {
         .lines()
         .filter(|line| line.contains("it sees the surface where it is, to 0."));
     assert_eq!(there.count(), 6, "{text}");
+    let alone = text.lines();
+    let alone = alone.filter(|line| line.contains("  compared with nothing"));
+    let names: Vec<&str> = alone.map(|line| &line[..12]).collect();
+    assert_eq!(names, ["IMG_0007.jpg", "IMG_0008.jpg", "IMG_0009.jpg"]);
     // And what speaks against photos otherwise, as the other commands say it.
     let hole = "IMG_0009.jpg: check: over a hole in the cloud: top right";
     assert!(text.contains(hole), "{text}");
