@@ -217,6 +217,10 @@ mod tests {
             first_names(&more),
             format!("{} and 1 more", long.join(", "))
         );
+        // Four of 40 characters with their commas are 166 long; a fifth would be 206.
+        let longer = ["a", "b", "c", "d", "e"].map(|letter| letter.repeat(40));
+        let said = format!("{} and 1 more", longer[..4].join(", "));
+        assert_eq!(first_names(&longer), said);
     }
 
     #[test]

@@ -193,7 +193,7 @@ pub enum NotComparable {
 }
 
 /// ITU-R BT.601's luma, 0 to 255.
-fn brightness([red, green, blue]: [u8; 3]) -> f64 {
+pub fn brightness([red, green, blue]: [u8; 3]) -> f64 {
     0.299 * f64::from(red) + 0.587 * f64::from(green) + 0.114 * f64::from(blue)
 }
 

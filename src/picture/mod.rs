@@ -27,7 +27,7 @@ mod tint;
 mod undistort;
 mod warp;
 
-pub use agreement::{Agreement, Flip, Mismatch, NotComparable, for_comparing};
+pub use agreement::{Agreement, Flip, Mismatch, NotComparable, brightness, for_comparing};
 pub use canvas::{Canvas, Color, Halo};
 pub use decode::{DecodedPhoto, PhotoFormat, decode, decode_photo};
 pub use drape::{Draping, PhotoAbove};

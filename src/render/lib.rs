@@ -33,6 +33,7 @@ pub use fragscale_core::picture::viridis;
 pub use furniture::flight_line::{Taken, flight_line};
 pub use furniture::flown_lines::flown_lines;
 pub use furniture::labels::{Label, Legend, ScaleBar};
+pub use furniture::measured::MEASURED;
 pub use furniture::photo_lines::SELECTED;
 pub use furniture::plan_lines::{plan_areas, plan_photos, plan_way};
 pub use primitives::mesh::MeshBuffers;

@@ -4,10 +4,7 @@ use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, pos2, vec2};
 
 use super::Scene;
 use crate::picture::Anchor;
-use crate::render::{Label, viridis};
-
-/// The colour of what is measured, in the renderer's picture.
-const MEASURED: [u8; 3] = [255, 60, 180];
+use crate::render::{Label, MEASURED, viridis};
 
 pub(super) fn write(scene: &Scene, label: &Label, ui: &egui::Ui) {
     let anchor = match label.anchor {

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use image::RgbImage;
 
 use crate::labels::LabelImage;
-use crate::picture::reduced;
+use crate::picture::{brightness, reduced};
 
 /// The longer side of the photo as it is looked at, pixels: drawn by hand, outlines lie a pixel of these beside the edges.
 const LOOKED_AT: u32 = 512;
@@ -103,12 +103,7 @@ struct Strengths {
 impl Strengths {
     fn of(photo: &RgbImage) -> Self {
         let (width, height) = (photo.width() as usize, photo.height() as usize);
-        // ITU-R BT.601's luma.
-        let luma = photo.pixels().map(|pixel| {
-            let [r, g, b] = pixel.0.map(f64::from);
-            0.299 * r + 0.587 * g + 0.114 * b
-        });
-        let luma: Vec<f64> = luma.collect();
+        let luma: Vec<f64> = photo.pixels().map(|pixel| brightness(pixel.0)).collect();
         let slopes = slopes(&luma, width, height);
         let around = means_around(&slopes, width, height);
         let strengths = slopes
@@ -187,7 +182,7 @@ mod tests {
 
     use super::*;
 
-    /// Round stones, each of its own brightness with a grain, on dark ground; the outlines of stones `of` a seed, moved.
+    /// Round stones, each of its own brightness with a grain, on dark ground; the outlines of the same stones, moved.
     fn stones(seed: u32, by: u32) -> (RgbImage, LabelImage) {
         let (width, height) = (512_u32, 384_u32);
         // Ellis' lowbias32: places and sizes that follow no pattern.

@@ -267,24 +267,25 @@ impl PhotosTogether {
         let fits = !self.fitting.is_empty();
         doubt_strangers(said.iter_mut().flatten().map(|(_, sight)| sight), fits);
         let sights = || said.iter().flatten().map(|(_, sight)| sight);
-        let elsewhere = all_elsewhere(sights());
+        let elsewhere = all_elsewhere(sights())
+            .map(|(photos, factor)| Together::OthersElsewhere { photos, factor });
         let nowhere = all_nowhere(sights()).filter(|_| !fits);
+        let nowhere = nowhere.map(|photos| Together::OthersNowhere { photos });
+        // Of those that do not tell. Where the surface is elsewhere it is so for a photo without a file, too.
+        let of_others = |photo: usize| match &elsewhere {
+            None if self.absent.contains(&photo) => None,
+            None => nowhere.clone(),
+            elsewhere => elsewhere.clone(),
+        };
         let all = said.into_iter().enumerate();
         let together = all.filter_map(|(photo, said)| {
-            let together = match (said, elsewhere) {
-                (None | Some((_, PairSight::Unclear)), Some((photos, factor))) => {
-                    Together::OthersElsewhere { photos, factor }
-                }
-                (Some((other, sight)), _) if nowhere.is_none() || sight != PairSight::Unclear => {
-                    Together::Pair {
-                        other: photos[other].name.clone(),
-                        sight,
-                    }
-                }
-                _ if self.absent.contains(&photo) => return None,
-                _ => Together::OthersNowhere { photos: nowhere? },
-            };
-            Some((photo, together))
+            let pair = said.map(|(other, sight)| Together::Pair {
+                other: photos[other].name.clone(),
+                sight,
+            });
+            let tells = said.is_some_and(|(_, sight)| sight != PairSight::Unclear);
+            let of_others = of_others(photo).filter(|_| !tells);
+            Some((photo, of_others.or(pair)?))
         });
         together.collect()
     }

@@ -20,6 +20,8 @@
 use image::RgbImage;
 use rayon::prelude::*;
 
+use super::brightness;
+
 /// The three smoothings, pixels.
 const SMOOTHINGS: [f64; 3] = [1.0, 1.6, 2.4];
 
@@ -50,10 +52,7 @@ const FAR: f64 = 1.5;
 
 /// The deviation, in pixels, of the bell that spreads the clear edges of a photo; `None` of a photo without enough of them.
 pub fn edge_spread(photo: &RgbImage) -> Option<f64> {
-    let gray = photo.as_raw().chunks_exact(3).map(|rgb| {
-        let [r, g, b] = [rgb[0], rgb[1], rgb[2]].map(f64::from);
-        0.299 * r + 0.587 * g + 0.114 * b
-    });
+    let gray = photo.pixels().map(|pixel| brightness(pixel.0));
     let gray = Gray {
         values: gray.collect(),
         width: photo.width() as usize,

@@ -2,19 +2,17 @@
 
 use glam::{DVec2, DVec3};
 
+use super::measured::MEASURED;
 use super::photo_lines::ink;
 use crate::primitives::lines::{Pen, Stroke};
 use crate::show::Show;
 use crate::view::View;
 
-/// Of the points and lines.
-const COLOR: [u8; 3] = [255, 60, 180];
-
 /// The lines and their points, in pixels of the picture; over everything, wherever the points are.
 pub(super) fn strokes(view: &View, show: &Show, size: DVec2) -> Vec<Stroke> {
     let place = |point: DVec3| Some(view.project(point, size)?.extend(0.0));
     let rim = ink(show).map(|channel| 255 - channel);
-    let pens = [Pen::new(rim, 4.5).pale(0.55), Pen::new(COLOR, 2.0)];
+    let pens = [Pen::new(rim, 4.5).pale(0.55), Pen::new(MEASURED, 2.0)];
     let mut strokes = Vec::new();
     for line in show.planned_lines.iter() {
         for pen in [

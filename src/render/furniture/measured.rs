@@ -11,8 +11,8 @@ use crate::primitives::lines::{Pen, Stroke};
 use crate::show::Show;
 use crate::view::View;
 
-/// Of the points and the line.
-const COLOR: [u8; 3] = [255, 60, 180];
+/// Of the points and the line, and of all that is measured by hand.
+pub const MEASURED: [u8; 3] = [255, 60, 180];
 /// From here on a part is drawn: nearly along the line it would only thicken that, in pixels.
 const LEAST_PART: f64 = 6.0;
 
@@ -33,7 +33,7 @@ pub(super) fn strokes(view: &View, show: &Show, size: DVec2) -> Vec<Stroke> {
     let places = places(view, show, size);
     let at = |pixel: DVec2| pixel.extend(0.0);
     let rim = ink(show).map(|channel| 255 - channel);
-    let pens = [Pen::new(rim, 4.5).pale(0.55), Pen::new(COLOR, 2.0)];
+    let pens = [Pen::new(rim, 4.5).pale(0.55), Pen::new(MEASURED, 2.0)];
     let mut strokes = Vec::new();
     if let ([from, to], [a, b]) = (&places[..], &show.measured[..])
         && let Some(corner) = view.project(elbow([*a, *b]), size)
@@ -42,7 +42,7 @@ pub(super) fn strokes(view: &View, show: &Show, size: DVec2) -> Vec<Stroke> {
         for end in [*from, *to] {
             if end.distance(corner) > least {
                 strokes.push(Pen::new(rim, 3.0).pale(0.4).line(at(end), at(corner)));
-                strokes.push(Pen::new(COLOR, 1.2).pale(0.8).line(at(end), at(corner)));
+                strokes.push(Pen::new(MEASURED, 1.2).pale(0.8).line(at(end), at(corner)));
             }
         }
     }
@@ -79,7 +79,7 @@ pub(super) fn labels(view: &View, show: &Show, size: DVec2) -> Vec<Label> {
         at,
         text,
         anchor,
-        color: COLOR,
+        color: MEASURED,
     };
     vec![
         label(

@@ -7,7 +7,7 @@ pub(crate) mod flight_line;
 pub(crate) mod flown_lines;
 pub(crate) mod image_edge;
 pub(crate) mod labels;
-mod measured;
+pub(crate) mod measured;
 pub(crate) mod photo_lines;
 mod picked;
 pub(crate) mod plan_lines;

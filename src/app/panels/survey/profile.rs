@@ -7,6 +7,7 @@ use crate::command::{Command, MeasuredTable};
 use crate::exports::{ProfileReport, is_of_a_stone, profile_csv, profile_table};
 use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::Drawn;
+use crate::render::MEASURED;
 use crate::survey::LEAST_BRIDGED;
 
 /// Points of the plot at most: more than any screen has columns.
@@ -49,11 +50,12 @@ pub(super) fn profile(
             }
             for face in faces.iter().flatten() {
                 let ends = [face.crest, face.toe].map(|at| [at.distance, at.point.z]);
+                let [red, green, blue] = MEASURED;
                 let marks = Points::new("Crest and toe", ends.to_vec());
                 plot.points(
                     marks
                         .radius(4.0)
-                        .color(egui::Color32::from_rgb(255, 60, 180)),
+                        .color(egui::Color32::from_rgb(red, green, blue)),
                 );
             }
         });

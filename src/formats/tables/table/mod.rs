@@ -460,15 +460,20 @@ impl Table {
     /// and the number itself or its column says so, too: metres with points may stand beside percents with commas.
     fn without_thousands(&self, number: &str, column: usize) -> Option<String> {
         let (separator, whole) = without_separators(number)?;
-        let is_settled = match separator {
-            '.' => self.decimal_comma && !self.decimal_point,
-            _ => self.decimal_point && !self.decimal_comma,
-        };
         let says_so = || {
             let signs = self.columns.get(column);
             signs.is_some_and(|signs| signs.are_parted_by(separator))
         };
-        (is_settled && (!may_be_thousands(number) || says_so())).then_some(whole)
+        let is_parted = self.is_not_decimal(separator) && (!may_be_thousands(number) || says_so());
+        is_parted.then_some(whole)
+    }
+
+    /// Whether the cells show that the other sign is the decimal one, and this one never is.
+    fn is_not_decimal(&self, sign: char) -> bool {
+        match sign {
+            '.' => self.decimal_comma && !self.decimal_point,
+            _ => self.decimal_point && !self.decimal_comma,
+        }
     }
 
     /// Refuses numbers in the names of these columns that all may have thousands, parted by the sign that in the cells is not the
@@ -477,11 +482,8 @@ impl Table {
     /// # Errors
     /// With the first of them.
     pub(crate) fn check_numbers_in_names(&self, columns: &[usize]) -> Result<(), Fault> {
-        let signs = [
-            ('.', self.decimal_comma && !self.decimal_point),
-            (',', self.decimal_point && !self.decimal_comma),
-        ];
-        for (sign, _) in signs.into_iter().filter(|(_, is_other)| *is_other) {
+        let others = ['.', ','].into_iter();
+        for sign in others.filter(|sign| self.is_not_decimal(*sign)) {
             let names = columns.iter().filter_map(|column| self.header.get(*column));
             let mut with = names.filter(|name| number_text(name.trim()).0.contains(sign));
             let Some(first) = with.next() else { continue };
