@@ -190,7 +190,7 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         "tif" | "tiff" => Kind::Cloud(CloudFormat::GeoTiff),
         "yaml" | "yml" | "xml" => Kind::Camera,
         "json" if json_camera::is_camera(&String::from_utf8_lossy(text)) => Kind::Camera,
-        "csv" | "txt" | "tsv" if poses_csv::has_photo_column(text) => Kind::Poses,
+        "csv" | "txt" | "tsv" if poses_csv::is_table(text) => Kind::Poses,
         "csv" | "txt" | "tsv" if poses_opk::is_table(text) => Kind::Poses,
         "csv" | "txt" if metashape::is_opk(&String::from_utf8_lossy(text)) => Kind::Poses,
         "log" | "txt" if open3d::is_log(&String::from_utf8_lossy(text)) => Kind::Poses,

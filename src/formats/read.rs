@@ -56,17 +56,18 @@ pub fn read_cloud_sample(path: &Path, progress: &Progress) -> Option<(CloudFile,
     las::sample::read_sample(input, progress)
 }
 
-/// What to do with a text that is no cloud because it lists places for georeferencing.
+/// What to do with a text that is no cloud because it lists places for georeferencing, or what is wrong with the list.
 fn known_places(path: &Path, format: CloudFormat) -> Option<Fault> {
     if format != CloudFormat::Xyz {
         return None;
     }
     let (what, option) = match read_known_places(path)? {
-        KnownPlaces::ControlPoints(list) => {
+        Err(fault) => return Some(fault),
+        Ok(KnownPlaces::ControlPoints(list)) => {
             let count = list.list.points.len();
             (format!("{count} ground control points"), "gcp")
         }
-        KnownPlaces::OfPhotos(list) => {
+        Ok(KnownPlaces::OfPhotos(list)) => {
             let count = list.positions.len();
             (format!("the positions of {count} photos"), "positions")
         }

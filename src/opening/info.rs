@@ -32,21 +32,23 @@ use fragscale_core::plan::{Height, LostSignal};
 /// # Errors
 /// With the file and the place in it.
 pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
-    // Lists of known places have columns like a cloud's, and DJI's no name that tells.
-    let or_places = |error| {
-        read_known_places(path)
-            .as_ref()
-            .map(places_info)
-            .ok_or(error)
-    };
     let kind = match detect(path) {
         Ok(kind) => kind,
-        Err(error) => return or_places(error),
+        // DJI's list of places has no name that tells.
+        Err(error) => {
+            return match read_known_places(path) {
+                Some(Ok(places)) => Ok(places_info(&places)),
+                Some(Err(fault)) => Err(FileError::new(path, fault)),
+                None => Err(error),
+            };
+        }
     };
     Ok(match kind {
-        Kind::Cloud(CloudFormat::Xyz) => match read_cloud(path, progress) {
-            Ok(file) => cloud_info(&file),
-            Err(error) => or_places(error)?,
+        Kind::Cloud(CloudFormat::Xyz) => match read_known_places(path) {
+            // Which have columns like a cloud's.
+            Some(Ok(places)) => places_info(&places),
+            // A cloud can have names of classes; where it is none, its reader says what is wrong with the list.
+            _ => cloud_info(&read_cloud(path, progress)?),
         },
         Kind::Cloud(_) => cloud_info(&read_cloud(path, progress)?),
         Kind::Camera => camera_info(&read_camera(path)?),
@@ -483,10 +485,54 @@ mod tests {
             0.01, 0.02, 0.03\t50,Q\n";
         let said = of("Timestamp.MRK", line);
         assert_eq!(said["kind"], "positions");
-        // A mark without its photo, which is no position.
-        let path = folder.path().join("unnamed.txt");
-        fs::write(&path, "EPSG:32633\n500010.1 5000020.2 160.1 100 200\n").unwrap();
-        assert!(info(&path, &Progress::default()).is_err());
+        // As surveyors list them, and as people do: not clouds of two points, nor poses.
+        let said = of(
+            "gcp.csv",
+            "name,x,y,z\nGCP1,500000,5000000,100\nGCP2,500010,5000000,101\n",
+        );
+        assert_eq!(
+            (&said["kind"], said["points"].as_array().map(Vec::len)),
+            (&json!("control-points"), Some(2))
+        );
+        let said = of(
+            "gcps.csv",
+            "GCP;Easting;Northing;Elevation\n1;500000;5000000;100\n2;500010;5000000;101\n",
+        );
+        assert_eq!(said["kind"], "control-points");
+        let said = of(
+            "places.csv",
+            "photo,x,y,z\na.jpg,500000,5000000,160\nb.jpg,500010,5000000,161\n",
+        );
+        assert_eq!(
+            (&said["kind"], said["positions"].as_array().map(Vec::len)),
+            (&json!("positions"), Some(2))
+        );
+        // A column of classes or of numbers makes no list.
+        let said = of("classes.csv", "label,x,y,z\nrock,1,2,3\nrock,2,2,3\n");
+        assert_eq!(said["kind"], "cloud");
+        let said = of("numbers.csv", "id,x,y,z\n1,1,2,3\n2,2,2,3\n");
+        assert_eq!(said["kind"], "cloud");
+        // What is wrong with a list is said in its own words: a mark without its photo, a height that is none.
+        for (name, text, place, what) in [
+            (
+                "unnamed.txt",
+                "EPSG:32633\n500010.1 5000020.2 160.1 100 200\n",
+                2,
+                "a line of 5 fields",
+            ),
+            ("letters.txt", "EPSG:4326\na.jpg 7.5 50.25 high\n", 2, "z"),
+            (
+                "empty.csv",
+                "gcp,easting,northing,height\n7,500000,,100\n",
+                2,
+                "the line has no Y",
+            ),
+        ] {
+            let path = folder.path().join(name);
+            fs::write(&path, text).unwrap();
+            let error = info(&path, &Progress::default()).unwrap_err().to_string();
+            assert!(error.contains(&format!(":{place}: {what}")), "{error}");
+        }
         // What is neither is an error as ever.
         let path = folder.path().join("letter.txt");
         fs::write(&path, "Dear all,\nthe blast is at noon, as ever.\n").unwrap();

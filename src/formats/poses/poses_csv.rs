@@ -114,17 +114,15 @@ pub(crate) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
     Ok(file)
 }
 
-/// Whether the first line that is no comment names a column "photo".
-pub(crate) fn has_photo_column(start: &[u8]) -> bool {
+/// Whether the first line that is no comment names a column "photo" and one of an angle: without, they are positions of photos.
+pub(crate) fn is_table(start: &[u8]) -> bool {
     let text = String::from_utf8_lossy(start);
     let mut lines = text.trim_start_matches('\u{feff}').lines();
     let header = lines.find(|line| !line.trim().is_empty() && !line.starts_with('#'));
     header.is_some_and(|header| {
         let columns = Separator::of(header).split(header);
-        columns.len() > 1
-            && columns
-                .iter()
-                .any(|name| name.eq_ignore_ascii_case("photo"))
+        let has = |wanted: &str| columns.iter().any(|name| name.eq_ignore_ascii_case(wanted));
+        has("photo") && ORIENTATIONS.into_iter().flatten().any(|name| has(name))
     })
 }
 
@@ -406,7 +404,7 @@ mod tests {
             "photo\tx\ty\tz\tqx\tqy\tqz\tqw\na;b.jpg\t350123.456\t5000000.5\t12\t1\t0\t0\t0\n";
         let blanks = "photo x y z qx qy qz qw\na;b.jpg 350123.456 5000000.5 12 1 0 0 0\n";
         for (text, repaired) in [(semicolons, 1), (tabs, 0), (blanks, 0)] {
-            assert!(has_photo_column(text.as_bytes()), "{text}");
+            assert!(is_table(text.as_bytes()), "{text}");
             let file = read(text.as_bytes()).unwrap();
             assert_eq!(file.lines[0].photo, "a;b.jpg");
             let center = DVec3::new(350_123.456, 5_000_000.5, 12.0);
@@ -419,7 +417,7 @@ mod tests {
         let unclear = "photo;x;y;z;tilt;pan\na;350,123;1;2;90;0\n";
         let fault = read(unclear.as_bytes()).unwrap_err();
         assert!(fault.what.contains("thousands"), "{fault}");
-        assert!(!has_photo_column(b"photo\n") && !has_photo_column(b"x,y,photos\n"));
+        assert!(!is_table(b"photo\n") && !is_table(b"x,y,photos\n"));
     }
 
     #[test]

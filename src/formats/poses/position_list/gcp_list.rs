@@ -31,6 +31,7 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 
+use super::geo_file::content;
 use super::{ControlPoints, check_degrees, is_geographic};
 use crate::control::{ControlList, ControlPoint, ScaleBar};
 use crate::fault::Fault;
@@ -50,6 +51,15 @@ pub(super) fn is_mark(line: &str) -> bool {
     let fields = split(line.trim());
     let is_photo = |field: &String| !line.contains(',') || is_called(field, Ending::Raw);
     numbers_ahead(&fields) == 5 && fields.get(5).is_some_and(is_photo)
+}
+
+/// Whether the first line behind that of the coordinate system is one of points, which begin with a coordinate or have no photo's name.
+pub(super) fn begins_with_numbers(text: &str) -> bool {
+    let fields = content(text).next().map(|(line, _)| split(line));
+    fields.is_some_and(|fields| {
+        let name = fields.first();
+        numbers_ahead(&fields) > 0 || !name.is_some_and(|name| is_called(name, Ending::Raw))
+    })
 }
 
 /// How many of the first fields are numbers.

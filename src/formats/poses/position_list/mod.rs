@@ -14,10 +14,12 @@
 mod gcp_list;
 mod gcp_text;
 mod geo_file;
+mod known;
 pub(crate) mod mrk;
 mod table;
 
 pub use gcp_text::control_list_text;
+pub use known::{KnownPlaces, read_known_places};
 pub use mrk::number_of_photo;
 
 use std::collections::{BTreeSet, HashMap};
@@ -27,9 +29,8 @@ use glam::DVec3;
 
 use crate::control::{ControlList, ControlPoint};
 use crate::fault::{Fault, first_names, one_line};
-use crate::files::{FLIGHT_MARK, FileError, read_small, read_text, text_from_bytes};
+use crate::files::{FLIGHT_MARK, FileError, read_text};
 use crate::packages::odm::crs_from_text;
-use crate::photos::image_names::{Ending, is_called};
 use crate::photos::photo_metadata;
 use crate::photos::photos_below::PhotosBelow;
 
@@ -66,43 +67,6 @@ pub struct ControlPoints {
     pub list: ControlList,
     /// What the reader had to assume or leave out, one sentence each.
     pub warnings: Vec<String>,
-}
-
-/// A list of known places, whichever it is.
-#[derive(Debug, Clone, PartialEq)]
-pub enum KnownPlaces {
-    /// Of ground control points.
-    ControlPoints(ControlPoints),
-    /// Where photos were taken.
-    OfPhotos(PositionList),
-}
-
-/// Reads a list of known places; `None` of what is none, or has faults. What it is asked of may be anything: a film, a cloud.
-pub fn read_known_places(path: &Path) -> Option<KnownPlaces> {
-    const MOST: u64 = 16 << 20;
-    let bytes = read_small(path, MOST, "list of places", "").ok()?;
-    let text = text_from_bytes(&bytes).ok()?;
-    let points = control_points_from_text(text).ok();
-    // Coordinates and pixels without a name begin with a number that is none's.
-    let is_named = |of: &NamedPosition| !(of.name.contains('.') && of.name.parse::<f64>().is_ok());
-    let positions = || {
-        let list = positions_from_text(text).ok()?;
-        let are_named = list.positions.iter().all(is_named);
-        are_named.then_some(KnownPlaces::OfPhotos(list))
-    };
-    match points {
-        Some(list) if !are_of_photos(&list) => Some(KnownPlaces::ControlPoints(list)),
-        _ => positions(),
-    }
-}
-
-/// Whether the points of a list are called as images are: then they are places of photos, whose columns a list of points has, too.
-fn are_of_photos(list: &ControlPoints) -> bool {
-    let points = &list.list.points;
-    !points.is_empty()
-        && points
-            .iter()
-            .all(|point| is_called(&point.name, Ending::Raw))
 }
 
 /// Reads a list of photos' positions.

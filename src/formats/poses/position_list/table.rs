@@ -78,6 +78,29 @@ pub(super) fn read(text: &str) -> Result<PositionList, Fault> {
     Ok(list)
 }
 
+/// Whether a table is one of named places and of nothing else: its header names a column of photos or control points, or names
+/// stand there. Numbers in a column "id" may be a cloud's.
+pub(super) fn is_of_names(text: &str) -> bool {
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+    let header = lines.find_map(|line| {
+        let comment = line.trim_start().strip_prefix('#');
+        let layout = Layout::of(comment.unwrap_or(line));
+        (layout.is_some() || comment.is_none()).then_some(layout)
+    });
+    let Some(layout) = header.flatten() else {
+        return false;
+    };
+    if layout.says_whose {
+        return true;
+    }
+    // The first few tell.
+    let mut names = lines.take(20).filter_map(|line| {
+        let fields = layout.separator.split(line);
+        fields.into_iter().nth(layout.place(Column::Name)?)
+    });
+    names.any(|name| !name.is_empty() && name.parse::<f64>().is_err())
+}
+
 fn no_header(line: u64, text: &str) -> Fault {
     let shown: String = text.chars().take(60).collect();
     Fault::at(
@@ -191,6 +214,8 @@ struct Layout {
     /// In brackets behind each name.
     units: Vec<Option<LengthUnit>>,
     is_degrees: bool,
+    /// Its column of names is one of photos or control points by its own name.
+    says_whose: bool,
 }
 
 impl Layout {
@@ -202,8 +227,12 @@ impl Layout {
             columns: Vec::new(),
             units: Vec::new(),
             is_degrees: false,
+            says_whose: false,
         };
         let fields = separator.split(header);
+        let whose = ["photo", "image", "gcp"];
+        let mut names = fields.iter().map(|field| squeezed(field));
+        layout.says_whose = names.any(|name| whose.iter().any(|word| name.starts_with(word)));
         layout.columns = fields.iter().map(|field| Column::of(field)).collect();
         layout.units = fields.iter().map(|field| unit_in_brackets(field)).collect();
         let has = |column| layout.place(column).is_some();

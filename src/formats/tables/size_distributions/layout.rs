@@ -1,14 +1,14 @@
 //! Which of the layouts a table has, told by the names of its columns.
 
 use super::DistributionColumns;
-use super::names::{RetainedName, Role, is_amount, role, sample_of, weight_of};
+use super::names::{RetainedName, Role, is_amount, is_called_size, role, sample_of, weight_of};
 use super::percentile_column::{PercentileColumn, PercentsOfSet};
 use super::retained::{is_pan, is_total};
 use super::size_text::SizeText;
 use super::size_unit::SizeUnit;
 use super::vocabulary::PASSING_NAMES;
 use crate::fault::Fault;
-use crate::fragmentation::Weighting;
+use crate::fragmentation::{Weighting, names_sieve};
 use crate::tables::table::{Table, key};
 
 /// A layout, with the columns that matter.
@@ -260,9 +260,16 @@ impl<'a> Names<'a> {
             .collect()
     }
 
-    /// The column of sizes; `anywhere`, also one that is only perhaps one, where it is not the first.
+    /// The column of sizes; `anywhere`, also one that is only perhaps one, where it is not the first. Beside one that is called sizes
+    /// or has their unit, the bare word for a sieve is a method's: what was found by sieving.
     fn size(&self, anywhere: bool) -> Result<Option<usize>, Fault> {
+        let is_sieve = |column: &usize| names_sieve(&self.table.name(*column));
         let sure = self.with(|role| matches!(role, Role::Size(_)));
+        let (sieves, called): (Vec<usize>, Vec<usize>) = sure.into_iter().partition(is_sieve);
+        let sure = match called.is_empty() {
+            true => sieves,
+            false => called,
+        };
         if let [one, two, ..] = sure[..] {
             let what = format!(
                 "columns '{}' and '{}' may both be the sizes",
@@ -272,8 +279,16 @@ impl<'a> Names<'a> {
             return Err(self.fault(what, "name one of them (--size)"));
         }
         let perhaps = self.with(|role| matches!(role, Role::PerhapsSize(_)));
-        let perhaps = perhaps.into_iter().find(|&column| anywhere || column == 0);
-        Ok(sure.first().copied().or(perhaps))
+        let first = perhaps.iter().find(|&&column| anywhere || column == 0);
+        let found = sure.first().or(first).copied();
+        if !found.as_ref().is_some_and(is_sieve) {
+            return Ok(found);
+        }
+        let is_called = |column: &&usize| match self.roles.get(**column) {
+            Some(Role::PerhapsSize(Some(_))) => true,
+            _ => is_called_size(&self.table.name(**column)),
+        };
+        Ok(perhaps.iter().find(is_called).copied().or(found))
     }
 
     fn unit(&self, column: usize) -> Option<SizeUnit> {

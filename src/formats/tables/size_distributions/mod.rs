@@ -8,7 +8,8 @@
 //! 20,35.5                                weight (area, mass) are optional
 //!
 //! Size (mm);sieve;point cloud/1/a.jpg    one column a curve, called method/trial/photo;
-//! 20;35,5;                               a cell may be empty
+//! 20;35,5;                               a cell may be empty; beside sizes the bare word for a
+//!                                        sieve is a method ("Siebgröße (mm)" and "Sieb")
 //!
 //! photo,10 mm,20 mm,40 mm                one line a curve, a column each size
 //! a.jpg,12,35.5,100                      (or "Sieve (mm),10,20,40" over "sieve A,12,35.5,100")

@@ -6,7 +6,7 @@ use super::vocabulary::{
     SIZE_WORDS, TRIAL_NAMES, is_retained, says_cumulative, says_mass, says_percent, says_retained,
     words,
 };
-use crate::fragmentation::Weighting;
+use crate::fragmentation::{Weighting, names_sieve, names_sieving};
 use crate::tables::table::key;
 use crate::units::LengthUnit;
 
@@ -184,6 +184,13 @@ fn of_size_role(words: &[String], unit: Option<SizeUnit>) -> Role {
         true => Role::Size(unit),
         false => Role::PerhapsSize(unit),
     }
+}
+
+/// Whether a name is made of words for sizes alone ("Korngröße"), and is not the bare word for a sieve.
+pub(super) fn is_called_size(name: &str) -> bool {
+    let words = words(name);
+    let is_size = |word: &String| SIZE_NAMES.contains(&word.as_str());
+    !words.is_empty() && words.iter().all(is_size) && !names_sieve(name)
 }
 
 /// How many square metres or kilograms are one of what the name of a column of areas or masses says; 1 where it says no unit. Tables
@@ -400,7 +407,9 @@ pub(super) fn role(name: &str) -> Role {
         && (words.iter().any(|word| says_cumulative(word)) || any(&["under", "below"]))
         && !any(&["over", "above", "larger"])
         && !name.contains('>');
-    if within(PASSING_NAMES)
+    // "Przesiewanie" is sieving, "przesiew" what passes.
+    let is_sieving = name.split('/').next().is_some_and(names_sieving);
+    if within(PASSING_NAMES) && !is_sieving
         || any(&["pass", "pasa", "through"])
         || cumulative.contains(&joined.as_str())
         || is_volume_below

@@ -8,7 +8,7 @@ mod units;
 use proptest::prelude::*;
 
 use super::*;
-use crate::fragmentation::Labels;
+use crate::fragmentation::{Labels, names_sieve};
 use fragscale_test_data::shared_data;
 
 type Points = Vec<[f64; 2]>;
@@ -138,6 +138,63 @@ fn a_column_a_curve() {
     );
     let (set, _) = read("size_mm,1,2,3\n1,2,3,4\n2,3,4,5\n");
     assert_eq!(names(&set), ["1||", "2||", "3||"]);
+}
+
+/// The bare word for a sieve beside sizes is a method, in whatever language; alone it is the sizes.
+#[test]
+fn a_sieve_beside_sizes_is_a_method() {
+    let curve = [[10.0, 21.0], [20.0, 52.0], [40.0, 100.0]];
+    for (size, method) in [
+        ("Sieve size (mm)", "sieve"),
+        ("Siebgröße (mm)", "Sieb"),
+        ("Sieböffnung (mm)", "Sieb"),
+        ("Sieb (mm)", "Sieb"),
+        ("Siebgröße", "Sieb"),
+        ("Korngröße", "Sieb"),
+        ("mm", "Sieb"),
+        ("d [mm]", "Sieb"),
+        ("Siebgröße (mm)", "Siebanalyse"),
+        ("Ouverture (mm)", "tamis"),
+        ("Ouverture", "Tamis"),
+        ("Ouverture (mm)", "tamisage"),
+        ("Abertura (mm)", "Tamiz"),
+        ("Tamaño (mm)", "cribado"),
+        ("Apertura (mm)", "Setaccio"),
+        ("Abertura (mm)", "peneira"),
+        ("Rozmiar (mm)", "sito"),
+        ("Rozmiar (mm)", "przesiewanie"),
+        ("Maskvidd (mm)", "sikt"),
+        ("Elek açıklığı (mm)", "elek"),
+        ("Размер (мм)", "сито"),
+    ] {
+        let wanted = [
+            format!("{method}||"),
+            "Kamera|1|".into(),
+            "Kamera|2|".into(),
+        ];
+        let rows = "40\t100\t100\t98\n20\t52\t50\t55\n10\t21\t20\t25\n";
+        let (set, _) = read(&format!("{size}\t{method}\tKamera/1\tKamera/2\n{rows}"));
+        assert_eq!(names(&set), wanted, "{size}");
+        assert_eq!(set.curves[0].distribution.points(), curve, "{size}");
+        let rows = "100\t40\t100\t98\n52\t20\t50\t55\n21\t10\t20\t25\n";
+        // In whatever order, where the method's name is that of a sieve.
+        if names_sieve(method) {
+            let (set, _) = read(&format!("{method}\t{size}\tKamera/1\tKamera/2\n{rows}"));
+            assert_eq!(names(&set), wanted, "{size}");
+            assert_eq!(set.curves[0].distribution.points(), curve, "{size}");
+        }
+    }
+    for size in ["Sieb", "tamis", "Tamiz", "Sito"] {
+        let (set, _) = read(&format!("{size};Kamera/1;Kamera/2\n20;50;55\n10;20;25\n"));
+        assert_eq!(names(&set), ["Kamera|1|", "Kamera|2|"], "{size}");
+    }
+    assert!(is_table("Siebgröße (mm)\tSieb\tKamera\n10\t20\t30\n", true));
+    // Two that are called sizes are asked about, a sieve beside them or not.
+    let (_, said) = fault("Sieb;min size;max size;passing\n1;1;2;30\n2;3;4;50\n");
+    assert!(
+        said.starts_with("columns 'min size' and 'max size' may both"),
+        "{said}"
+    );
 }
 
 #[test]
