@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 
 use super::comparison::{MeasuredBy, compare_known};
+use super::reference_names::{IN_WORDS, called_reference};
 use super::repeats::measured_by;
 use super::{
     Comparison, ComparisonOptions, DistributionSet, Fit, FitOptions, LabelledDistribution, Model,
@@ -20,9 +21,6 @@ pub const MARKED_PERCENTILES: [f64; 2] = [50.0, 80.0];
 
 /// The level of significance of analyses of variance where nobody chose another.
 pub const SIGNIFICANCE: f64 = 0.05;
-
-/// How the reference is called where nobody has chosen one, in any case of letters.
-const REFERENCES: [&str; 4] = ["sieve", "sieving", "reference", "known fragments"];
 
 /// How to analyse.
 #[derive(Debug, Clone, PartialEq)]
@@ -128,8 +126,7 @@ impl Analysis {
         let (reference, guessed) = reference(&methods, options.reference.as_ref());
         if let (true, Some(first), true) = (guessed, &reference, methods.len() > 1) {
             warnings.push(format!(
-                "no method is called '{}': the others are held against the first, '{first}'",
-                REFERENCES.join("', '")
+                "no method is called {IN_WORDS}: the others are held against the first, '{first}'"
             ));
         }
         progress.stage("comparing");
@@ -194,11 +191,7 @@ impl DistributionSet {
 /// The method that the others are held against: the chosen one, else the one that is called so, else
 /// the first, of which it is said that it was guessed.
 fn reference(methods: &[String], chosen: Option<&String>) -> (Option<String>, bool) {
-    let called = || {
-        let names = |name: &&str| methods.iter().find(|m| m.to_lowercase() == **name);
-        REFERENCES.iter().find_map(names)
-    };
-    match chosen.or_else(called) {
+    match chosen.or_else(|| called_reference(methods)) {
         Some(known) => (Some(known.clone()), false),
         None => (methods.first().cloned(), true),
     }
@@ -337,6 +330,10 @@ mod tests {
             (["cloud", "Sieve"], None, "Sieve", 0),
             (["known fragments", "sieving"], None, "sieving", 0),
             (["cloud", "sieve"], Some("cloud"), "cloud", 0),
+            (["Kamera", "Sieb"], None, "Sieb", 0),
+            (["Referenz", "Siebanalyse"], None, "Siebanalyse", 0),
+            (["caméra", "Tamisage"], None, "Tamisage", 0),
+            (["cámara", "cribado"], None, "cribado", 0),
             (["cloud", "belt"], None, "cloud", 1),
         ] {
             let options = AnalysisOptions {

@@ -10,6 +10,7 @@
 //! fit             least squares, covariance, percentiles with confidence bands
 //! comparison      methods against the reference: residuals, norms, envelopes, shifts
 //! anova           one-way analysis of variance
+//! reference_names how the reference is called where nobody chose one
 //! repeats         what is left of a mean of photos without one after another: what its bands rest on
 //! analysis        all of it for a table of methods: sieves, merging, the reference, what is said
 //! effort          time that each step took
@@ -29,6 +30,7 @@ mod fit;
 mod functions;
 mod joining;
 mod merging;
+mod reference_names;
 mod repeats;
 #[cfg(test)]
 #[allow(clippy::expect_used, reason = "in a test a panic is the report")]
@@ -54,4 +56,5 @@ pub use functions::{
     Swebrec, Swebrec5, Swebrec5Error, SwebrecError,
 };
 pub use merging::{Merged, Weighting, merge};
+pub use reference_names::{names_sieve, names_sieving};
 pub use sieve_series::{Resampled, Sieve, SieveSeries, resample};

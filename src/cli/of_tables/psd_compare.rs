@@ -21,7 +21,7 @@ pub(in crate::cli) struct CompareArguments {
     #[command(flatten)]
     table: DistributionArguments,
     /// The method that the others are held against. Without it, the one called sieve, sieving,
-    /// reference or known fragments, else the first.
+    /// reference (also Sieb, tamisage and others) or known fragments, else the first.
     #[arg(long, value_name = "METHOD")]
     reference: Option<String>,
     /// Half the width of the envelope about the reference, percent.

@@ -22,7 +22,7 @@ pub use fit::{FitReport, FittedCurve, fit_csv, fit_csv_warnings, fit_json, fit_t
 pub use points::points_of_curves_csv;
 pub use report::{ComparisonReport, comparison_report};
 
-use crate::fragmentation::{Comparison, MethodCurve};
+use crate::fragmentation::{Comparison, MethodComparison, MethodCurve};
 
 /// What is to be known of a comparison before it is trusted, a sentence each: of the reference, of each method, of the
 /// functions that were fitted to them.
@@ -46,6 +46,18 @@ pub fn comparison_notes(comparison: &Comparison) -> Vec<String> {
 fn curves(comparison: &Comparison) -> impl Iterator<Item = &MethodCurve> {
     let others = comparison.methods.iter().map(|method| &method.curve);
     std::iter::once(&comparison.reference).chain(others)
+}
+
+/// What the star behind a method's percents at sizes of the reference means; `None` where none has one.
+fn star(method: &MethodComparison) -> Option<String> {
+    let mut residuals = method.residuals.iter();
+    let name = method_name(&method.curve.method);
+    let lacking = match method.curve.trials.len() {
+        0 | 1 => format!("'{name}' was not measured at this one"),
+        _ => format!("not every trial of '{name}' was measured at this one"),
+    };
+    let is_any = residuals.any(|residual| residual.interpolated);
+    is_any.then(|| format!("* interpolated between the sizes beside it: {lacking}"))
 }
 
 /// A method's name for people.

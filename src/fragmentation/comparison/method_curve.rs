@@ -136,6 +136,17 @@ pub(super) fn mean_at(trials: &[&SizeDistribution], size: f64) -> Option<MeanPoi
     })
 }
 
+/// Whether a trial that is known at a size was not measured there, but at sizes on both its sides.
+pub(super) fn is_between_points(trials: &[&SizeDistribution], size: f64) -> bool {
+    let is_there = |point: &[f64; 2]| (point[0] - size).abs() <= SAME_SIZE * size;
+    trials.iter().any(|trial| {
+        let points = trial.points();
+        let is_inside = |(first, last): (&[f64; 2], &[f64; 2])| first[0] < size && size < last[0];
+        let ends = points.first().zip(points.last());
+        ends.is_some_and(is_inside) && !points.iter().any(is_there)
+    })
+}
+
 /// The mean of trials at the sizes that all know; `None` where they share fewer than two.
 pub(crate) fn whole_mean_of(trials: &[&SizeDistribution]) -> Option<SizeDistribution> {
     whole_mean(&mean_points(trials), trials.len()).ok()
@@ -197,6 +208,25 @@ mod tests {
         assert!((size - 20.0).abs() < 1e-9, "{size}");
         assert_eq!(method.measured_size_at(60.0), Some(40.0));
         assert_eq!(method.measured_size_at(10.0), None);
+    }
+
+    /// 20 lies between 10 and 30, 10 and its rounding are one; beyond the ends nothing is between.
+    #[test]
+    fn between_points_nothing_was_measured() {
+        let few = distribution(&[[10.0, 0.0], [30.0, 100.0]]);
+        let more = distribution(&[[10.0, 0.0], [20.0, 50.0], [30.0, 100.0]]);
+        for (size, of_few) in [
+            (5.0, false),
+            (10.0, false),
+            (10.0 * (1.0 + 1e-12), false),
+            (20.0, true),
+            (30.0, false),
+            (40.0, false),
+        ] {
+            assert_eq!(is_between_points(&[&few], size), of_few, "{size}");
+            assert!(!is_between_points(&[&more], size), "{size}");
+            assert_eq!(is_between_points(&[&more, &few], size), of_few, "{size}");
+        }
     }
 
     /// At 10: 20, 30, 40, deviation 10. At 30 the third is between 10 and 90 halfway in the logarithm:

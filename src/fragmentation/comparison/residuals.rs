@@ -1,6 +1,6 @@
 //! Percent error of the passing at each size.
 
-use super::method_curve::{MeanPoint, mean_at};
+use super::method_curve::{MeanPoint, is_between_points, mean_at};
 use crate::SizeDistribution;
 
 /// What a percent error is, for headers and notes of outputs.
@@ -17,6 +17,9 @@ pub struct PercentError {
     /// Mean percent passing of the method, between its points linear in the logarithm of the size;
     /// `None` where no trial is known.
     pub passing: Option<f64>,
+    /// Whether `passing` is not measured there, of every trial or of some, but taken from the sizes
+    /// beside it.
+    pub interpolated: bool,
     /// `passing` less `reference`, percentage points.
     pub difference: Option<f64>,
     /// See [`PERCENT_ERROR`]; `None` where the reference is 0 or the method unknown.
@@ -41,6 +44,7 @@ impl PercentError {
             size: reference.size,
             reference: reference.mean,
             passing,
+            interpolated: is_between_points(trials, reference.size),
             difference,
             percent_error,
             within: percent_error.map(|error| error.abs() <= envelope_percent),
@@ -71,10 +75,27 @@ mod tests {
         assert_eq!(at(10.0, 10.0).within, Some(false));
         assert_eq!(at(100.0, 40.0).percent_error, Some(-10.0));
         assert_eq!(at(100.0, 40.0).within, Some(true));
+        assert!(!at(10.0, 10.0).interpolated && !at(100.0, 40.0).interpolated);
         let none = at(1.0, 0.0);
         assert_eq!((none.difference, none.percent_error), (Some(2.0), None));
         assert_eq!(none.within, None);
         assert_eq!(at(200.0, 50.0).passing, None);
         assert_eq!(at(200.0, 50.0).percent_error, None);
+        assert!(!at(200.0, 50.0).interpolated);
+    }
+
+    /// Of 40 % at 10 and 50 % at 20 mm, 45 % at the size in their middle on a logarithmic axis: nobody measured it.
+    #[test]
+    fn what_was_not_measured_is_known() {
+        let method = SizeDistribution::new(vec![[10.0, 40.0], [20.0, 50.0]]).expect("points");
+        let reference = MeanPoint {
+            size: 200.0_f64.sqrt(),
+            mean: 45.0,
+            standard_deviation: None,
+            trials: 1,
+        };
+        let found = PercentError::new(&reference, &[&method], 30.0);
+        assert!((found.passing.expect("known") - 45.0).abs() < 1e-9);
+        assert!(found.interpolated);
     }
 }

@@ -95,8 +95,9 @@ pub struct Fit {
     pub rmse: f64,
     /// 1 - residual sum of squares / (weighted) sum of squares about the (weighted) mean.
     pub r_squared: f64,
-    /// Points (with a weight above 0) less fitted parameters; a parameter that ended at its bound was
-    /// fitted, one that was given was not.
+    /// Points (with a weight above 0) less fitted parameters, 0 where there are fewer; a parameter that
+    /// ended at its bound was fitted, one that was given was not. Points do not count that everything
+    /// passed and of which the function says so whatever its parameters are: those at and above xmax.
     pub degrees_of_freedom: usize,
     /// What to know before trusting it, one sentence each: a parameter at its bound, two optima.
     pub notes: Vec<String>,
@@ -104,6 +105,8 @@ pub struct Fit {
     pub not_determined: Vec<NotDetermined>,
     /// The points [size, percent passing] that it was fitted to, sizes ascending.
     fitted_to: Vec<[f64; 2]>,
+    /// How many of them say nothing of the parameters.
+    certain: usize,
     known: Known,
 }
 
@@ -215,7 +218,11 @@ impl Fit {
     #[must_use]
     pub(crate) fn of_fewer_points(mut self, points: usize, own: usize) -> Self {
         let fewer = points.saturating_sub(own);
-        let left = self.degrees_of_freedom.saturating_sub(fewer);
+        // Those of them that say nothing did not count before; they are as many as among all.
+        let certain = self.certain * fewer / points.max(1);
+        let left = self
+            .degrees_of_freedom
+            .saturating_sub(fewer.saturating_sub(certain));
         let ratio = points as f64 / own.max(1) as f64;
         self.known = match self.known {
             Known::Scatter(_) if left == 0 => Known::Nothing,
@@ -288,9 +295,10 @@ pub fn fit(
     };
     let names = model.parameter_names();
     let fitted = names.len() - usize::from(options.xmax.is_some());
-    // As many points as parameters at least: Points holds that.
-    let degrees_of_freedom = points.points.len() - fitted;
     let free = notes::free(&family, best);
+    let certain = uncertainty::certain(&family, &points, &best.at, &free);
+    let telling = points.points.len() - certain;
+    let degrees_of_freedom = telling.saturating_sub(fitted);
     let uncertainty = Uncertainty::new(
         family,
         &points,
@@ -342,7 +350,8 @@ pub fn fit(
         options,
         parameters: &parameters,
         others: &others,
-        degrees_of_freedom,
+        fitted,
+        telling,
         known: uncertainty.is_some(),
     };
     let not_determined = notes::not_determined(&told);
@@ -359,6 +368,7 @@ pub fn fit(
         notes,
         not_determined,
         fitted_to,
+        certain,
         known: uncertainty.map_or(Known::Nothing, |of| Known::Scatter(Box::new(of))),
     })
 }

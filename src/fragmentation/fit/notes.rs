@@ -1,5 +1,7 @@
 //! What to know before trusting a fit, a sentence each.
 
+use std::cmp::Ordering;
+
 use super::coordinates::{Coordinates, Optimum};
 use super::family::Family;
 use super::points::Points;
@@ -22,7 +24,10 @@ pub(super) struct Told<'a> {
     pub(super) parameters: &'a [FittedParameter],
     /// Sum and function of the other places where the search came to rest.
     pub(super) others: &'a [(f64, Curve)],
-    pub(super) degrees_of_freedom: usize,
+    /// How many parameters were fitted.
+    pub(super) fitted: usize,
+    /// How many points say something of them.
+    pub(super) telling: usize,
     /// Whether there are standard errors.
     pub(super) known: bool,
 }
@@ -52,14 +57,7 @@ fn near(at: f64, bound: f64, other: f64) -> bool {
 }
 
 pub(super) fn notes(told: &Told, not_determined: &[NotDetermined]) -> Vec<String> {
-    let mut notes = Vec::new();
-    if told.degrees_of_freedom == 0 {
-        notes.push(
-            "as many parameters as points: the function goes through all of them as well as it can, \
-             and nothing is left over to say how far it can be trusted"
-                .to_owned(),
-        );
-    }
+    let mut notes: Vec<String> = nothing_left(told).into_iter().collect();
     notes.extend(not_determined.iter().map(|of| of.why.clone()));
     let coordinates = &told.best.at;
     match told.family {
@@ -68,7 +66,7 @@ pub(super) fn notes(told: &Told, not_determined: &[NotDetermined]) -> Vec<String
         Family::GatesGaudinSchuhmann(_) => gates_gaudin_schuhmann(told, coordinates, &mut notes),
     }
     exponents(told, coordinates, &mut notes);
-    if told.degrees_of_freedom > 0 && !told.known {
+    if told.telling > told.fitted && !told.known {
         notes.push(
             "the points cannot tell the parameters apart: there are no standard errors".to_owned(),
         );
@@ -76,6 +74,29 @@ pub(super) fn notes(told: &Told, not_determined: &[NotDetermined]) -> Vec<String
     another_optimum(told, &mut notes);
     notes.extend(beyond(told.points));
     notes
+}
+
+/// That no point is left over to learn from how well the parameters are known.
+fn nothing_left(told: &Told) -> Option<String> {
+    let others = "where everything passed the function says 100 % whatever they are";
+    let few = match told.telling.cmp(&told.fitted) {
+        Ordering::Greater => return None,
+        Ordering::Equal if told.telling == told.points.points.len() => {
+            "as many parameters as points: the function goes through all of them as well as it can"
+                .to_owned()
+        }
+        Ordering::Equal => format!(
+            "as many parameters as points that say anything of them ({others}): the function goes \
+             through these as well as it can"
+        ),
+        Ordering::Less => format!(
+            "more parameters than points that say anything of them ({others}): other functions go \
+             through these as well"
+        ),
+    };
+    Some(format!(
+        "{few}, and nothing is left over to say how far it can be trusted"
+    ))
 }
 
 /// Which of the usual percentiles nothing was measured at.

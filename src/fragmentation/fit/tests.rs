@@ -314,6 +314,136 @@ fn as_many_points_as_parameters_leave_nothing_over() {
     assert!(fit.notes[0].contains("as many parameters as points"));
 }
 
+/// Above its xmax everything passes any Gates-Gaudin-Schuhmann: two points are left for two parameters. By hand
+/// m = ln(90 / 60) / ln(25 / 12.5), and the line reaches 100 % at 25 * 0.9^(-1 / m) mm, below the sieve of 31.5.
+#[test]
+fn what_everything_passed_does_not_count() {
+    let plain = FitOptions::default();
+    let points = [
+        [12.5, 60.0],
+        [25.0, 90.0],
+        [31.5, 100.0],
+        [50.0, 100.0],
+        [63.0, 100.0],
+    ];
+    let fit = fitted(&points, Model::GatesGaudinSchuhmann, &plain).expect("a fit");
+    let m = 1.5_f64.ln() / 2.0_f64.ln();
+    assert!(near(value(&fit, "m"), m, 1e-6));
+    assert!(near(
+        value(&fit, "xmax"),
+        25.0 * 0.9_f64.powf(-1.0 / m),
+        1e-6
+    ));
+    assert_eq!(fit.degrees_of_freedom, 0);
+    assert!(fit.parameters.iter().all(|p| p.standard_error.is_none()));
+    assert_eq!(fit.percentile(50.0, 0.95).band, None);
+    assert_eq!(fit.band_at(20.0, 0.95), None);
+    assert!(
+        fit.notes[0].starts_with("as many parameters as points that say anything"),
+        "{:?}",
+        fit.notes
+    );
+    // A largest size that is known is 100 % by itself, too: one point is left for one parameter.
+    let points = [[12.5, 60.0], [25.0, 100.0], [50.0, 100.0]];
+    let given = FitOptions {
+        weights: None,
+        xmax: Some(25.0),
+    };
+    let of_given = fitted(&points, Model::GatesGaudinSchuhmann, &given).expect("a fit");
+    assert_eq!(of_given.degrees_of_freedom, 0);
+    assert!(near(
+        value(&of_given, "m"),
+        (1.0 / 0.6_f64).ln() / 2.0_f64.ln(),
+        1e-6
+    ));
+    // Where it is not known, any of 12.5 to 25 mm does.
+    let any = fitted(&points, Model::GatesGaudinSchuhmann, &plain).expect("a fit");
+    assert_eq!(any.degrees_of_freedom, 0);
+    assert_eq!(any.percentile(50.0, 0.95).band, None);
+    assert!(
+        any.notes[0].starts_with("more parameters than points"),
+        "{:?}",
+        any.notes
+    );
+}
+
+/// The standard errors are scipy's (`curve_fit`) of the points below xmax; with those above it scipy's own are half as large of
+/// Gates-Gaudin-Schuhmann, as if these had been learnt from.
+#[test]
+fn what_everything_passed_makes_nothing_surer() {
+    let of_ggs = [[6.3, 38.0], [12.5, 60.0], [25.0, 90.0]];
+    let of_swebrec = [
+        [4.0, 10.0],
+        [8.0, 15.0],
+        [16.0, 27.0],
+        [31.5, 53.0],
+        [45.0, 74.0],
+        [63.0, 94.0],
+    ];
+    for (model, below, left, known) in [
+        (
+            Model::GatesGaudinSchuhmann,
+            &of_ggs[..],
+            1,
+            &[
+                ("xmax", 29.510_137, 0.781_905),
+                ("m", 0.613_897, 0.023_353_9),
+            ][..],
+        ),
+        (
+            Model::Swebrec,
+            &of_swebrec[..],
+            3,
+            &[
+                ("xmax", 82.0935, 1.804_34),
+                ("x50", 29.922_51, 0.172_492),
+                ("b", 2.044_252, 0.050_393_5),
+            ][..],
+        ),
+    ] {
+        let mut points = below.to_vec();
+        points.extend([100.0, 125.0, 250.0].map(|size| [size, 100.0]));
+        for points in [below, &points] {
+            let fit = fitted(points, model, &FitOptions::default()).expect("a fit");
+            assert_eq!(fit.degrees_of_freedom, left, "{fit:?}");
+            for &(name, wanted, error) in known {
+                let found = parameter(&fit, name);
+                assert!(near(found.value, wanted, 1e-5), "{found:?}");
+                let found = found.standard_error.expect("one");
+                assert!(near(found, error, 1e-4), "{name} {found}");
+            }
+        }
+    }
+}
+
+/// Of eight points four are measured: of sixteen, eight of which say nothing, eight are, and four of these say something.
+#[test]
+fn of_points_between_those_that_say_nothing_are_fewer_too() {
+    let below = [
+        [1.0, 13.0],
+        [2.0, 20.0],
+        [4.0, 30.0],
+        [8.0, 46.0],
+        [12.5, 60.0],
+        [16.0, 69.0],
+        [20.0, 79.0],
+        [25.0, 91.0],
+    ];
+    let above = [31.5, 40.0, 50.0, 63.0, 80.0, 100.0, 125.0, 160.0];
+    let mut all = below.to_vec();
+    all.extend(above.map(|size| [size, 100.0]));
+    let band = |points: &[[f64; 2]], own| {
+        let model = Model::GatesGaudinSchuhmann;
+        let fit = fitted(points, model, &FitOptions::default()).expect("a fit");
+        let fit = fit.of_fewer_points(points.len(), own);
+        fit.percentile(50.0, 0.95).band.expect("a band")
+    };
+    let (of_below, of_all) = (band(&below, 4), band(&all, 8));
+    for (one, other) in of_below.into_iter().zip(of_all) {
+        assert!(near(one, other, 1e-6), "{of_below:?} {of_all:?}");
+    }
+}
+
 #[test]
 fn another_unit_scales_the_sizes() {
     let mut noise = Noise(SplitMix(3));

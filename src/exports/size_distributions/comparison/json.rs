@@ -65,6 +65,8 @@ struct Residual {
     size: f64,
     reference: f64,
     passing: Option<f64>,
+    /// Not measured at this size, but taken from those beside it.
+    interpolated: bool,
     difference: Option<f64>,
     percent_error: Option<f64>,
     within: Option<bool>,
@@ -172,6 +174,7 @@ fn method(method: &MethodComparison) -> Method<'_> {
         size: residual.size,
         reference: residual.reference,
         passing: residual.passing,
+        interpolated: residual.interpolated,
         difference: residual.difference,
         percent_error: residual.percent_error,
         within: residual.within,
@@ -208,7 +211,9 @@ mod tests {
 
     #[test]
     fn values_under_their_names() {
-        let text = comparison_json(&comparison()).unwrap();
+        let mut comparison = comparison();
+        comparison.methods[0].residuals[1].interpolated = true;
+        let text = comparison_json(&comparison).unwrap();
         let value: serde_json::Value = serde_json::from_str(&text).unwrap();
         assert_eq!(value["unit"], "mm");
         assert_eq!(value["model"], "swebrec");
@@ -219,6 +224,8 @@ mod tests {
         assert_eq!(method["points"][1]["standard_deviation"], 1.5);
         assert!(method["residuals"][0]["percent_error"].is_null());
         assert_eq!(method["residuals"][1]["percent_error"], 10.0);
+        assert_eq!(method["residuals"][0]["interpolated"], false);
+        assert_eq!(method["residuals"][1]["interpolated"], true);
         assert_eq!(method["norm"]["relative_percent"], 9.4);
         assert_eq!(method["percentiles"][0]["shift_percent"], -10.0);
         assert_eq!(method["shift"]["mean_percent"], -10.0);

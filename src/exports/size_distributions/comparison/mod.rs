@@ -62,6 +62,7 @@ pub(super) mod test_comparison {
                 size,
                 reference,
                 passing,
+                interpolated: false,
                 difference: passing.map(|passing| passing - reference),
                 percent_error,
                 within: percent_error.map(|error| error.abs() <= 30.0),

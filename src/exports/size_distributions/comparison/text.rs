@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use crate::fragmentation::{
     Comparison, MethodComparison, MethodCurve, PERCENT_ERROR, SCALE_WARNING,
 };
-use crate::size_distributions::comparison_notes;
 use crate::size_distributions::fit::NOT_DETERMINED;
 use crate::size_distributions::text_table::{aligned, or_dash, signed, significant, trimmed};
+use crate::size_distributions::{comparison_notes, star};
 
 /// The curves, then the percent errors, the norms and the percentiles of every method.
 pub fn comparison_text(comparison: &Comparison) -> String {
@@ -90,17 +90,28 @@ fn residual_text(text: &mut String, method: &MethodComparison, comparison: &Comp
         "% error",
         &within,
     ])];
+    let star = star(method);
     for residual in &method.residuals {
+        // Without a star a blank, so that decimals stay below each other.
+        let mark = match (&star, residual.interpolated) {
+            (None, _) => "",
+            (Some(_), false) => " ",
+            (Some(_), true) => "*",
+        };
+        let passing = or_dash(residual.passing, |passing| format!("{passing:.2}"));
         rows.push(vec![
             trimmed(residual.size, 6),
             format!("{:.2}", residual.reference),
-            or_dash(residual.passing, |passing| format!("{passing:.2}")),
+            passing + mark,
             or_dash(residual.difference, |difference| signed(difference, 2)),
             or_dash(residual.percent_error, |error| signed(error, 1)),
             residual.within.map_or("-", yes).to_owned(),
         ]);
     }
     *text += &aligned(&rows);
+    if let Some(star) = star {
+        let _ = writeln!(text, "{star}");
+    }
     text.push('\n');
 }
 
@@ -221,5 +232,26 @@ mod tests {
             assert!(text.contains(line), "{line}\nis not in\n{text}");
         }
         assert!(!text.contains("scale object is"), "said once");
+        assert!(!text.contains('*'), "{text}");
+    }
+
+    /// A passing that nobody measured is told from the others, whose decimals stay below each other.
+    #[test]
+    fn what_is_interpolated_has_a_star() {
+        let mut comparison = comparison();
+        comparison.methods[0].residuals[1].interpolated = true;
+        let text = comparison_text(&comparison);
+        let table = "size mm  sieve  point cloud  difference  % error  within 30 %\n\
+             10        0.00        5.00        +5.00        -            -\n\
+             100      80.00       88.00*       +8.00    +10.0          yes\n\
+             * interpolated between the sizes beside it: not every trial of 'point cloud' was measured at this one\n\n";
+        assert!(text.contains(table), "{text}");
+        assert_eq!(text.matches('*').count(), 2, "{text}");
+        comparison.methods[0].curve.trials.truncate(1);
+        let text = comparison_text(&comparison);
+        assert!(
+            text.contains(": 'point cloud' was not measured at this one\n"),
+            "{text}"
+        );
     }
 }

@@ -272,6 +272,7 @@ fn a_comparison_shows_what_it_found() {
         size,
         reference: 0.0,
         passing: None,
+        interpolated: false,
         difference: None,
         percent_error,
         within: None,

@@ -13,7 +13,7 @@ mod tests;
 use numbers::{measured, number};
 
 use super::fit::NOT_DETERMINED;
-use super::{comparison_notes, curves, figure_of_comparison, figure_svg, method_name};
+use super::{comparison_notes, curves, figure_of_comparison, figure_svg, method_name, star};
 use crate::fault::Fault;
 use crate::fragmentation::{
     Analysis, Comparison, Fit, MethodComparison, PERCENT_ERROR, Repeatability, SCALE_WARNING,
@@ -263,10 +263,14 @@ fn of_method(method: &MethodComparison, comparison: &Comparison) -> String {
     html += &heading(3, "Sizes that given percents pass, by the fitted functions");
     html += &table(&head, rows.collect());
     let rows = method.residuals.iter().map(|residual| {
+        let mark = match residual.interpolated {
+            true => "*",
+            false => "",
+        };
         vec![
             measured(residual.size).into(),
             percent(Some(residual.reference)).into(),
-            percent(residual.passing).into(),
+            (percent(residual.passing) + mark).into(),
             signed(residual.difference).into(),
             signed(residual.percent_error).into(),
             inside(residual.within),
@@ -281,7 +285,11 @@ fn of_method(method: &MethodComparison, comparison: &Comparison) -> String {
         format!("\u{b1}{envelope} %"),
     ];
     html += &heading(3, "Percent passing at the measured sizes");
-    html + &table(&head, rows.collect())
+    html += &table(&head, rows.collect());
+    if let Some(star) = star(method) {
+        html += &paragraph(&star);
+    }
+    html
 }
 
 /// Mean and standard deviation of the methods with trials.

@@ -103,6 +103,30 @@ fn says_what_was_found() {
     }
 }
 
+/// A passing that nobody measured has a star, which is explained below its table alone.
+#[test]
+fn what_is_interpolated_has_a_star() {
+    let mut comparison = comparison();
+    assert!(!html(&comparison, &[], &[]).contains("* interpolated"));
+    comparison.methods[0].residuals[1].interpolated = true;
+    let page = html(&comparison, &[], &[]);
+    let document = parsed(&page);
+    let at_hundred = rows(&document, "100");
+    assert_eq!(
+        at_hundred[0],
+        ["100", "80.0", "88.0*", "+8.0", "+10.0", "inside"]
+    );
+    assert_eq!(at_hundred[1][2], "88.0");
+    let said: Vec<&str> = named(&document, "p").filter_map(|p| p.text()).collect();
+    let said = said.iter().filter(|said| said.starts_with('*'));
+    assert_eq!(
+        said.collect::<Vec<_>>(),
+        [
+            &"* interpolated between the sizes beside it: not every trial of 'point cloud' was measured at this one"
+        ]
+    );
+}
+
 #[test]
 fn nothing_from_outside_becomes_markup() {
     let nasty = "</td></svg><script>alert(1)</script>&\"'\u{0}";
