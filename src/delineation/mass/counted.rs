@@ -44,6 +44,18 @@ impl Counted {
     pub(crate) fn of<'a>(
         photos: impl IntoIterator<Item = (&'a PhotoFragments, Steps)>,
     ) -> Result<Self, Fault> {
+        let once = photos.into_iter();
+        Self::of_drawn(once.map(|(photo, steps)| (photo, steps, None)))
+    }
+
+    /// The same of fragments that were drawn: each photo with how many times each of its fragments is there, in their order;
+    /// `None` where each is there once.
+    ///
+    /// # Errors
+    /// Where no whole one is among them.
+    pub(crate) fn of_drawn<'a>(
+        photos: impl IntoIterator<Item = (&'a PhotoFragments, Steps, Option<&'a [f64]>)>,
+    ) -> Result<Self, Fault> {
         let mut counted = Self {
             whole: Vec::new(),
             of_fines: 0.0,
@@ -58,23 +70,27 @@ impl Counted {
         let mut off_surface = 0;
         // Those seen between others, by their places in `whole`.
         let (mut between, mut pores) = (Vec::new(), None);
-        for (photo, steps) in photos {
+        for (photo, steps, times) in photos {
             let first = counted.whole.len();
             let (rock_before, mut beside_no_rock) = (counted.rock, 0.0);
             counted.of_fines += steps.fines * photo.fines;
             counted.limit = counted.limit.max(photo.limit / steps.engine);
             counted.fines += photo.fines;
             counted.mm = photo.mm;
-            for fragment in &photo.fragments {
+            for (place, fragment) in photo.fragments.iter().enumerate() {
+                let times = times.map_or(1.0, |times| times[place]);
+                if times == 0.0 {
+                    continue;
+                }
                 let Some(world) = fragment.world else {
                     off_surface += 1;
                     continue;
                 };
-                counted.rock += world.area;
+                counted.rock += times * world.area;
                 if fragment.is_cut {
                     counted.cut += 1;
                     if !fragment.is_at_edge {
-                        beside_no_rock += world.area;
+                        beside_no_rock += times * world.area;
                     }
                     continue;
                 }
@@ -86,9 +102,8 @@ impl Counted {
                     }
                     false => 1.0,
                 };
-                counted
-                    .whole
-                    .push([world.sieve_size / steps.engine, world.area * stands_for]);
+                let mass = times * world.area * stands_for;
+                counted.whole.push([world.sieve_size / steps.engine, mass]);
             }
             if steps.edges {
                 let stands_for = counted.whole[first..].iter().map(|[_, area]| area);

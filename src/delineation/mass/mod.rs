@@ -24,6 +24,8 @@
 //! 6. How the fines are distributed no photo shows. A law may say it (`tail.rs`).
 
 mod counted;
+mod drawn;
+mod ends;
 pub mod intervals;
 pub mod tail;
 
