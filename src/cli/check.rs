@@ -10,7 +10,7 @@ use super::outputs::{OutputArguments, Outputs};
 use crate::exports::{PhotoLine, ScaleReport};
 use crate::fault::{Fault, one_line};
 use crate::files::CHECK_MARK;
-use crate::flight::{Doubt, Limits, Review};
+use crate::flight::{Doubt, Evidence, Limits, Review};
 use crate::formats::FileError;
 use crate::jobs::Progress;
 use crate::opening::{self, Colours, Opened};
@@ -115,8 +115,8 @@ fn look_at(
         let together = compared.together.iter().find(|(of, _)| *of == index);
         let together = together.map(|(_, together)| together.in_words());
         // Without colours nothing but those beside it speaks for a photo, and nothing does if none is.
-        let is_there = opened.photo_files[index].path.is_some();
-        let is_alone = !has_colours && is_there && together.is_none();
+        let evidence = review.looked_up().evidence.get(index);
+        let is_alone = !has_colours && evidence.is_some_and(Evidence::is_unconfirmed);
         let alone = is_alone.then(|| {
             "compared with nothing: no photo from beside it shows enough of the same rock"
                 .to_owned()

@@ -102,10 +102,11 @@ fn answer_of_scales(
     Ok(Answer::new(text, warnings))
 }
 
-/// What fell back or failed.
+/// What fell back or failed, and what nothing speaks for.
 pub(super) fn notes_of(report: &exports::ScaleReport<'_>) -> impl Iterator<Item = String> {
-    report.noted().into_iter().map(|noted| {
+    let noted = report.noted().into_iter().map(|noted| {
         let verdict = if noted.has_scale { "" } else { "no scale: " };
         format!("{}: {verdict}{}", noted.whose, noted.notes)
-    })
+    });
+    noted.chain(report.unconfirmed())
 }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::ReportObject;
 use crate::fault::{Fault, first_names};
-use crate::flight::{Doubt, PhotoReview, Review, ScaleObject};
+use crate::flight::{Doubt, Evidence, PhotoReview, Review, ScaleObject};
 use crate::numbers::{farther_percent, is_width};
 use crate::scale::{
     EdgeScales, ErrorSource, FittedScale, ImageKind, ScaleEstimate, ScalePair, Uncertainty,
@@ -123,6 +123,26 @@ impl<'a> ScaleReport<'a> {
     /// where nobody has settled one yet.
     pub fn reasons(&self) -> Vec<Noted> {
         self.grouped(|line| line.why_not_trusted())
+    }
+
+    /// Which photos with a scale were compared with nothing, in a sentence; `None` where all were, or nobody has compared any.
+    pub fn unconfirmed(&self) -> Option<String> {
+        let evidence = &self.review.looked_up().evidence;
+        let is_unconfirmed = |line: &PhotoLine<'_>| {
+            let evidence = evidence.get(line.index);
+            line.photo.scale().is_some() && evidence.is_some_and(Evidence::is_unconfirmed)
+        };
+        let names = self.lines().filter(is_unconfirmed);
+        let names: Vec<&str> = names.map(|line| line.photo.name()).collect();
+        (!names.is_empty()).then(|| {
+            format!(
+                "{} of {} photos were compared with nothing ({}): the surface shows no colours there, and no photo beside them shows enough \
+                 of the same rock. Look whether they show this place",
+                names.len(),
+                self.photos.len(),
+                first_names(&names)
+            )
+        })
     }
 
     /// What to do where half of the photos or more look beyond the surface; `None` elsewhere.

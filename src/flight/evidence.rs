@@ -71,6 +71,13 @@ pub struct Evidence {
 }
 
 impl Evidence {
+    /// Whether its pixels were compared with nothing, though its file is there: the surface shows no colours, and no photo is beside it.
+    pub fn is_unconfirmed(&self) -> bool {
+        let is_there = matches!(self.file, PhotoFileState::Found { .. });
+        let nothing = (&self.colours, &self.together);
+        is_there && nothing == (&ColoursFound::CannotTell, &TogetherFound::NotCompared)
+    }
+
     /// All that speaks against the photo, the gravest first. A file whose header cannot be read is
     /// doubted for that already, not for its colours once more.
     pub fn against(&self) -> impl Iterator<Item = &Doubt> {

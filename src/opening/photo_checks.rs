@@ -6,7 +6,7 @@
 //!   model, a focal length over 5 % (or what the metadata's own error allows) from the metadata's.
 //! - The height: cameras above the surface below them against RelativeAltitude, which counts from the
 //!   take-off. A deviation over 5 % is said where the take-off would lie outside the levels of the
-//!   surface: a drone that rises from a quarry's floor is less high above the pile.
+//!   surface: a drone that rises from a quarry's floor is less high above the pile. Of flights below 10 m so is one over 2 m.
 //! - The distance: to the surface in the middle of the photo against the drone's laser.
 //! - The places: see [`crate::photo_places`].
 //!
@@ -28,9 +28,10 @@ const MOST_PHOTOS: usize = 200;
 /// The deviation from which a sentence is due.
 const WORTH_SAYING: f64 = 0.05;
 
-/// The lowest flight, in metres, whose heights are compared: below it the barometer's own error is
-/// beyond 5 %.
+/// The lowest flight, in metres, whose heights are compared to 5 %: below it the barometer's own error is beyond that ...
 const LOWEST: f64 = 10.0;
+/// ... and what is off by so many metres is said, four times that error: a model of ten times its size.
+const OFF_IN_LOW: f64 = 2.0;
 
 /// Compares a flight with its photo files, which are in the order of its photos.
 pub(crate) fn photo_checks(flight: &Flight, files: &[PhotoFile]) -> (Vec<Finding>, MetadataRead) {
@@ -190,7 +191,7 @@ fn check_distances(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding>
     let (mut above, mut ahead, mut take_offs) = (Vec::new(), Vec::new(), Vec::new());
     for (_, photo, metadata) in described {
         let pose = &photo.pose;
-        if let Some(stated) = metadata.relative_altitude.filter(|&h| h >= LOWEST)
+        if let Some(stated) = metadata.relative_altitude.filter(|&h| h > 0.0)
             && let Some(height) = distance(pose.center, DVec3::NEG_Z)
         {
             above.push((height, stated));
@@ -205,8 +206,13 @@ fn check_distances(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding>
             }
         }
     }
+    let slack = |stated: f64| match stated < LOWEST {
+        true => OFF_IN_LOW,
+        false => WORTH_SAYING * stated,
+    };
     if let Some((above, stated)) = deviation(&above)
-        && !has_level(flight, &take_offs, WORTH_SAYING * stated / metres)
+        && (above - stated).abs() > slack(stated)
+        && !has_level(flight, &take_offs, slack(stated) / metres)
     {
         findings.push((Doubt::FlyingHeight { above, stated }, all.clone()));
     }
@@ -396,6 +402,9 @@ mod tests {
         // Within 5 %, and within the 5.1 % that 24 mm may be off.
         let near = flight("", film * 1.045, LengthUnit::Metre);
         assert_eq!(check(&near, ["FC1"; 2], 48.0, 52.0), [""; 0]);
+        // Half a metre, which a barometer does not tell from one and a half.
+        let low = flight("DJI FC1", film, LengthUnit::Centimetre);
+        assert_eq!(check(&low, ["FC1"; 2], 1.5, 0.5), [""; 0]);
         for (flight, models, altitude, range, words) in [
             (
                 flight("", film * 1.1, LengthUnit::Metre),
@@ -431,6 +440,14 @@ mod tests {
                 50.0,
                 62.5,
                 "50.0 m away, but the drone's laser measured 62.5 m (-20.0 %)",
+            ),
+            // A model of ten times its size, flown low.
+            (
+                flight("DJI FC1", film, LengthUnit::Metre),
+                ["FC1"; 2],
+                4.84,
+                50.0,
+                "their photos say 4.8 m above the take-off",
             ),
             // Feet: 15.24 m.
             (

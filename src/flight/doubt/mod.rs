@@ -307,10 +307,9 @@ pub enum Doubt {
         /// At so many times its distance, their median.
         factor: f64,
     },
-    /// Whether it sees the surface in its place it does not tell; photos of the flight that could are alike at no distance of it, and none
-    /// tells where it is.
+    /// Whether it sees the surface in its place it does not tell, nor does any photo of the flight that was compared with those beside it.
     OthersNowhere {
-        /// So many.
+        /// So many were.
         photos: usize,
     },
     /// The photo's colours match those of the surface when it is turned over.

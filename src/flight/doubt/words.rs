@@ -351,7 +351,7 @@ impl fmt::Display for Doubt {
             }
             Self::OthersNowhere { photos } => write!(
                 f,
-                "it does not show by itself where the surface is, and the {photos} photos of the flight that could are alike with those beside them at no distance of it: look whether photos, poses and surface are of one flight"
+                "it does not show by itself where the surface is, and none of the {photos} photos of the flight that were compared with those beside them does: look whether photos, poses and surface are of one flight"
             ),
             Self::Flipped {
                 correlation,
