@@ -10,7 +10,6 @@ use crate::geometry::LevelBox;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::picker::Purpose;
 use crate::open_flight::survey::picked::PickedPoint;
-use crate::planning::PlanStep;
 use crate::scale::ScalePair;
 use crate::size_distributions::Page;
 use crate::state::bundled::sample_flight;
@@ -219,8 +218,10 @@ impl State {
                     open.pick(Purpose::Plan, ray);
                 }
             }
-            Command::DoubleClick(_) if self.is_drawing_on_plan() => {
-                self.plan_step(PlanStep::Finish);
+            Command::DoubleClick(ray) if self.is_drawing_on_plan() => {
+                if let Some(open) = &mut self.open {
+                    open.pick(Purpose::EndArea, ray);
+                }
             }
             Command::Click(_)
             | Command::Hover(..)
@@ -245,6 +246,7 @@ impl State {
             open.looking.orbit.orthographic = self.preferences.layers.orthographic;
             open.look_at_control();
         }
+        self.look_at_notice();
         self.look_at_values();
         self.upload_beside();
     }

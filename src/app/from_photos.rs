@@ -160,6 +160,8 @@ pub struct FromPhotos {
     pub colmap: Option<InstalledColmap>,
     /// What the last run came to, until another folder is named.
     pub ended: Option<Ended>,
+    /// Whether the run that failed last can go on where it was: nothing was wrong with the photos.
+    pub(crate) goes_on: bool,
     /// Photos that could not be opened as a flight: they can be reconstructed.
     pub offered: Option<PathBuf>,
     /// The model of the run, while it grows and is looked at.

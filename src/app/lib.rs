@@ -26,6 +26,7 @@
 
 pub mod actions;
 pub mod apply;
+mod clicks;
 pub mod command;
 pub mod control_points;
 pub mod corner_loupe;

@@ -3,8 +3,9 @@
 use std::time::Duration;
 
 use crate::open_flight::OpenFlight;
-use crate::open_flight::picker::Picker;
+use crate::open_flight::picker::{Picker, Purpose};
 use crate::open_flight::survey::surveyor::Surveyor;
+use crate::planning::PlanStep;
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 
@@ -35,6 +36,7 @@ impl State {
         }
         self.take_growth();
         self.take_season();
+        let mut ends_area = false;
         if let Some(open) = &mut self.open {
             if !open.photo_view.tiles.take(&self.context) {
                 self.context.request_repaint();
@@ -42,6 +44,7 @@ impl State {
             let answers = open.pointer.picker.as_mut().map(Picker::answers);
             let before = open.selected;
             for picked in answers.into_iter().flatten() {
+                ends_area |= picked.purpose == Purpose::EndArea;
                 open.take_picked(picked);
             }
             let measured = open.pointer.surveyor.as_mut().map(Surveyor::answers);
@@ -54,6 +57,10 @@ impl State {
                 self.load_preview();
             }
         }
+        if ends_area {
+            self.plan_step(PlanStep::Finish);
+        }
+        self.look_at_notice();
         self.look_at_values();
         self.upload_beside();
         self.keep_aside();

@@ -442,15 +442,24 @@ fn distance(review: &Review) -> Option<HealthFinding> {
         let says = "The photos and those beside them do not tell where the surface is.".to_owned();
         return (!of_compared.is_empty()).then(|| of(item, Health::Unknown, "unclear", says));
     };
+    let seen = share(there.len(), review);
+    let rest = match there.len() == review.count() {
+        true => "",
+        false => " The others do not tell, or are beside none.",
+    };
     let says = format!(
-        "{} see the surface where it is, together with those beside them: within {:.1} % of its distance.",
-        share(there.len(), review),
+        "{seen} see the surface where it is, together with those beside them: within {:.1} % of its distance.{rest}",
         worst * 100.0
     );
-    Some(match 2 * there.len() > of_compared.len() {
-        true => of(item, Health::Good, "as seen", says),
-        false => of(item, Health::Unknown, share(there.len(), review), says),
-    })
+    let short = match rest {
+        "" => "as seen".to_owned(),
+        _ => seen,
+    };
+    let health = match 2 * there.len() > of_compared.len() {
+        true => Health::Good,
+        false => Health::Unknown,
+    };
+    Some(of(item, health, short, says))
 }
 
 fn exif(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {

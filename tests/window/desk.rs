@@ -230,9 +230,27 @@ impl Desk {
         self.settle();
     }
 
-    /// Replaces what is in a field, and leaves the field.
+    /// Replaces what is in a field, and presses Enter.
     #[track_caller]
     pub fn fill(&mut self, name: &str, text: &str) {
+        self.type_into(name, text);
+        self.press(Modifiers::NONE, Key::Enter);
+    }
+
+    /// Replaces what is in a field, and leaves it without Enter, which may begin something.
+    #[track_caller]
+    pub fn fill_and_leave(&mut self, name: &str, text: &str) {
+        self.type_into(name, text);
+        self.harness.ctx.memory_mut(|memory| {
+            if let Some(field) = memory.focused() {
+                memory.surrender_focus(field);
+            }
+        });
+        self.settle();
+    }
+
+    #[track_caller]
+    fn type_into(&mut self, name: &str, text: &str) {
         self.bring_into_sight(Role::TextInput, name);
         self.node(Role::TextInput, name).click();
         self.harness.run();
@@ -240,7 +258,6 @@ impl Desk {
         self.harness.key_press(Key::Backspace);
         self.harness.event(Event::Text(text.to_owned()));
         self.harness.run();
-        self.press(Modifiers::NONE, Key::Enter);
     }
 
     /// Types a path into the small window that asks for one.

@@ -529,11 +529,103 @@ fn results_are_those_of_the_command() {
     desk.click(Role::Button, "Take the outlines");
     let moved = outlines(&desk).now().clone();
     desk.click(Role::Button, "Outlines of another tool…");
-    desk.click(Role::RadioButton, "the usual photo");
+    let usual = "undistorted in fragscale's own files, else as shot";
+    desk.click(Role::RadioButton, usual);
     desk.type_path(&to.join("IMG_0001_labels.png"));
     desk.click(Role::Button, "Take the outlines");
     assert!(fragments(outlines(&desk).now()) > 500 && *outlines(&desk).now() != moved);
     assert!(!desk.shows(Role::Button, "Take the outlines"));
+}
+
+/// Outlines in LabelMe's form, which say of which photo they are: a square of 200 pixels.
+fn labelme(path: &std::path::Path, photo: &str) {
+    let text = format!(
+        r#"{{"shapes": [{{"label": "rock", "points": [[500, 300], [700, 300], [700, 500], [500, 500]]}}],
+            "imagePath": "{photo}", "imageHeight": 720, "imageWidth": 1280}}"#
+    );
+    fs::write(path, text).unwrap();
+}
+
+/// As a user found: LabelMe's outlines of another photo were taken, and what is doubtful of outlines stood in the log alone; what
+/// was wrong with a file was still said beside the next one that was taken, and on other pages.
+#[test]
+fn outlines_of_another_photo_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let [other, own] = ["other.json", "own.json"].map(|name| folder.path().join(name));
+    labelme(&other, "IMG_0001.jpg");
+    labelme(&own, "photos/IMG_0002.JPG");
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.click(Role::Tab, "Fragments");
+    desk.press(Modifiers::NONE, Key::ArrowDown);
+    assert_eq!(desk.selected(), "IMG_0002.jpg");
+    desk.click(Role::Button, "Outlines of another tool…");
+    desk.type_path(&other);
+    desk.click(Role::Button, "Take the outlines");
+    let why = "other.json: it has no outlines of IMG_0002.jpg, but of IMG_0001.jpg";
+    let notice = |desk: &Desk| desk.harness.state().state().notice.clone();
+    assert!(desk.says(why) && notice(&desk).is_some());
+    assert!(desk.open().fragments.of(1).is_none());
+    desk.type_path(&own);
+    desk.click(Role::Button, "Take the outlines");
+    assert_eq!(fragments(outlines(&desk).now()), 1);
+    assert_eq!(notice(&desk), None);
+    // What is doubtful of them stays in sight, with their file, and goes with them.
+    let doubt = "own.json: taken as outlines of the photo as shot";
+    assert!(desk.says(doubt) && desk.logged(&format!("IMG_0002.jpg: {doubt}")));
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert!(!desk.says(doubt));
+    desk.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert!(desk.says(doubt));
+    // What was wrong for one photo is not said of the next, nor what was done with it.
+    for leave in [Key::ArrowUp, Key::ArrowDown] {
+        let masks = FragmentStep::Masks {
+            path: folder.path().join("none.json"),
+            of: None,
+        };
+        desk.harness.state_mut().apply(Command::Fragments(masks));
+        desk.settle();
+        assert!(notice(&desk).is_some());
+        let said = |desk: &Desk| {
+            let said = desk.harness.state().state().last_said();
+            said.is_some_and(|line| line.text.contains("none.json"))
+        };
+        assert!(said(&desk));
+        desk.press(Modifiers::NONE, leave);
+        assert!(notice(&desk).is_none() && !said(&desk));
+    }
+}
+
+/// A frame that takes long gets several clicks at once, and the mouse is elsewhere by then.
+#[test]
+fn corners_are_where_they_were_clicked() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.click(Role::Tab, "Fragments");
+    desk.press(Modifiers::NONE, Key::O);
+    let corners = [(300.0, 200.0), (500.0, 240.0), (420.0, 400.0)];
+    let corners = corners.map(|(x, y)| DVec2::new(x, y));
+    let button = |pos: Pos2, pressed: bool| egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let mut events = Vec::new();
+    for corner in &corners[..2] {
+        let at = on_screen(&desk, *corner);
+        events.extend([
+            egui::Event::PointerMoved(at),
+            button(at, true),
+            button(at, false),
+        ]);
+    }
+    events.push(egui::Event::PointerMoved(on_screen(&desk, corners[2])));
+    desk.frame(events);
+    desk.settle();
+    let drawing = desk.open().fragments.drawing.clone();
+    assert_eq!(drawing.len(), 2, "{drawing:?}");
+    for (drawn, clicked) in drawing.iter().zip(corners) {
+        assert!(drawn.distance(clicked) < 1.0, "{drawn} for {clicked}");
+    }
 }
 
 /// A network of hers is named in the window, outlines, and what it is said to leave goes into the numbers: the same after

@@ -69,7 +69,7 @@ fn desk(address: &str) -> (TempDir, Desk) {
     copy_files("assets/sample/photos", &photos);
     let mut desk = Desk::new(None);
     desk.click(Role::Button, "New flight from photos");
-    desk.fill("Folder of the photos", photos.to_str().expect("UTF-8"));
+    desk.fill_and_leave("Folder of the photos", photos.to_str().expect("UTF-8"));
     desk.click(Role::RadioButton, "Engine: NodeODM");
     desk.fill("Address", address);
     (folder, desk)
@@ -227,8 +227,8 @@ fn start_is_one_click_behind_the_address() {
 fn looks(screen: &Screen, name: &str) {
     let mut desk = Desk::drawn(None, screen);
     desk.click(Role::Button, "New flight from photos");
-    desk.fill("Folder of the photos", "assets/sample/photos");
-    desk.fill("Folder to make", "flights/face 3");
+    desk.fill_and_leave("Folder of the photos", "assets/sample/photos");
+    desk.fill_and_leave("Folder to make", "flights/face 3");
     let found = Ok("COLMAP 3.8".to_owned());
     let step = Command::FromPhotos(FromPhotosStep::Colmap(found));
     desk.harness.state_mut().apply(step);

@@ -227,6 +227,30 @@ fn sizes_in_another_unit_are_the_same_sizes() {
     assert!((p50(&desk) / before - 1.0).abs() < 1e-12);
 }
 
+/// At 200 % on a small screen every unit is seen, and lists end where their column does.
+#[test]
+fn a_narrow_column_holds_its_fields() {
+    let (_folder, mut desk) = desk(&[("trials.csv", TRIALS)]);
+    let wide = desk.node(Role::ComboBox, "Function").rect().width();
+    desk.harness.set_size(egui::vec2(640.0, 360.0));
+    desk.settle();
+    // A third of the window.
+    let column = 640.0 * 0.33 + 1.0;
+    for unit in ["mm", "cm", "m", "in", "ft"] {
+        let name = format!("Sizes in {unit}");
+        let right = desk.node(Role::RadioButton, &name).rect().right();
+        assert!(right < column, "{unit}: {right}");
+    }
+    for list in ["Function", "Reference", "Merge photos by", "Sieves"] {
+        let place = desk.node(Role::ComboBox, list).rect();
+        assert!(place.right() < column, "{list}: {place:?}");
+        assert!(
+            place.width() > 60.0 && place.width() < wide,
+            "{list}: {place:?}"
+        );
+    }
+}
+
 #[test]
 fn the_reference_can_be_chosen() {
     let (_folder, mut desk) = desk(&[("trials.csv", TRIALS)]);

@@ -40,6 +40,8 @@ fn a_profile_is_drawn_and_measured() {
         drawn.profile().expect("a profile").length
     };
     assert!((length(&desk) - 1.0).abs() < 0.01, "{}", length(&desk));
+    // The plot would lie over what is drawn.
+    assert!(desk.says("So far ") && !desk.says("Length in plan"));
     click(&mut desk, to);
     desk.press(Modifiers::NONE, Key::Enter);
     assert!((length(&desk) - 1.2).abs() < 0.01, "{}", length(&desk));

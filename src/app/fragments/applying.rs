@@ -289,5 +289,6 @@ impl OpenFlight {
         self.fragments.selected = None;
         self.fragments.drawing.clear();
         self.fragments.refused = None;
+        self.fragments.masks_refused = None;
     }
 }

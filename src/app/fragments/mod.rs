@@ -63,6 +63,8 @@ pub struct PhotoOutlines {
     changes: u64,
     /// What outlined them: of the first ones (0), and of those changes that were an outlining.
     by: BTreeMap<u64, Outliner>,
+    /// What was said of those that were taken from files, by the same numbers.
+    notes: BTreeMap<u64, Vec<String>>,
     /// Whether nothing was outlined before the first change.
     from_nothing: bool,
 }
@@ -73,8 +75,8 @@ impl PhotoOutlines {
         Self::begun(outlines, by, Some(0), false)
     }
 
-    /// What outlined a photo of which nothing was outlined; undo leads back to nothing.
-    pub fn first(outlines: &Outlines, by: Outliner) -> Self {
+    /// What outlined a photo of which nothing was outlined, with what is to be said of it; undo leads back to nothing.
+    pub fn first(outlines: &Outlines, by: Outliner, notes: Vec<String>) -> Self {
         let labels = outlines.labels();
         let nothing = LabelImage {
             labels: vec![FINES; labels.labels.len()],
@@ -82,7 +84,7 @@ impl PhotoOutlines {
         };
         let nothing = Outlines::new(nothing, BTreeMap::new());
         let mut first = Self::begun(nothing, Outliner::default(), None, true);
-        first.outline_anew(outlines, by);
+        first.outline_anew(outlines, by, notes);
         first
     }
 
@@ -97,15 +99,28 @@ impl PhotoOutlines {
             undone: Vec::new(),
             changes: 0,
             by: BTreeMap::from([(0, by)]),
+            notes: BTreeMap::new(),
             from_nothing,
         }
     }
 
     /// What outlined those of now.
     pub fn by(&self) -> &Outliner {
-        let made = self.made.iter().rev().find_map(|made| self.by.get(made));
         // The first is always there.
-        made.or_else(|| self.by.get(&0)).unwrap_or(&NOBODY)
+        self.by.get(&self.outlined()).unwrap_or(&NOBODY)
+    }
+
+    /// What is to be said of the outlines that were taken from a file, as long as they are there.
+    pub fn notes(&self) -> &[String] {
+        let notes = self.notes.get(&self.outlined());
+        notes.map_or(&[][..], Vec::as_slice)
+    }
+
+    /// The number of the last change that was an outlining, 0 where none was.
+    fn outlined(&self) -> u64 {
+        let mut made = self.made.iter().rev();
+        let last = made.find(|made| self.by.contains_key(made));
+        last.copied().unwrap_or(0)
     }
 
     /// Whether all that was outlined is undone.
@@ -113,12 +128,13 @@ impl PhotoOutlines {
         self.from_nothing && self.made.is_empty()
     }
 
-    /// They become these.
-    pub(crate) fn outline_anew(&mut self, outlines: &Outlines, by: Outliner) {
+    /// They become these, of which that is to be said.
+    pub(crate) fn outline_anew(&mut self, outlines: &Outlines, by: Outliner, notes: Vec<String>) {
         let change = self.now().become_these(outlines);
         self.make(change);
         // Where nothing has changed it is that of now all the same.
         self.by.insert(self.revision, by);
+        self.notes.insert(self.revision, notes);
     }
 
     /// As they are now.

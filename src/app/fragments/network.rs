@@ -28,6 +28,7 @@ impl State {
         };
         self.start(Task::READ_NETWORK, work, move |state, read| match read {
             Ok(model) => {
+                state.import_taken(Task::READ_NETWORK);
                 let text = format!("network {}: ready to outline fragments", model.name());
                 state.say(Severity::Note, &text);
                 state.network.model = Some(Arc::new(model));
@@ -39,7 +40,7 @@ impl State {
                 }
             }
             Err(message) => {
-                state.say(Severity::Error, &message);
+                state.refuse_import(Task::READ_NETWORK, &message);
                 state.network.refused = Some(message);
             }
         });

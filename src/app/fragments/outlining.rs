@@ -9,6 +9,7 @@ use crate::command::Asking;
 use crate::delineation::{self, Delineated, Outliner, Regions};
 use crate::exports;
 use crate::fault::Fault;
+use crate::files::last_segment;
 use crate::flight::Photo;
 use crate::jobs::Progress;
 use crate::labels::{LabelImage, Outlines};
@@ -112,13 +113,13 @@ impl State {
                         spread,
                     } = found;
                     by.spread = spread;
-                    state.take_outlines(&of, outlines, Some(regions), by);
+                    state.take_outlines(&of, outlines, Some(regions), by, Vec::new());
                 }
                 Err(message) => state.say(Severity::Error, &message),
             }
             state.outline_next();
         });
-        self.say(Severity::Note, &format!("{said}: outlining its fragments"));
+        self.say_of_place(Severity::Note, &format!("{said}: outlining its fragments"));
     }
 
     /// Takes the selected photo's outlines from a file of another tool, or a folder of them.
@@ -133,6 +134,7 @@ impl State {
         let (flight, settings) = (open.flight().clone(), open.settings());
         let of_photo = (open.first_number, open.name(photo).to_owned());
         let files = open.files.photo_files.clone();
+        let called = last_segment(&path.to_string_lossy()).to_owned();
         let work = move |_: &Progress| -> Result<(LabelImage, Vec<String>), String> {
             let others = OutlinesOfOthers::open(&path, of).map_err(|error| error.to_string())?;
             let posed = &flight.parts().photos[photo];
@@ -150,8 +152,12 @@ impl State {
         };
         self.start(Task::READ_MASKS, work, move |state, read| match read {
             Ok((labels, notes)) => {
-                for note in notes {
-                    state.say(Severity::Warning, &note);
+                state.import_taken(Task::READ_MASKS);
+                let notes = notes.into_iter().map(|note| format!("{called}: {note}"));
+                let notes: Vec<String> = notes.collect();
+                for note in &notes {
+                    let text = format!("{}: {note}", of_photo.1);
+                    state.say(Severity::Warning, &text);
                 }
                 // A person or another tool looked at all of them.
                 let outlines = Outlines::new(labels, BTreeMap::new());
@@ -159,13 +165,13 @@ impl State {
                     engine: MASKS.to_owned(),
                     ..Outliner::default()
                 };
-                state.take_outlines(&of_photo, outlines, None, by);
+                state.take_outlines(&of_photo, outlines, None, by, notes);
                 if state.asking == Some(Asking::Masks) {
                     state.asking = None;
                 }
             }
             Err(message) => {
-                state.say(Severity::Error, &message);
+                state.refuse_import(Task::READ_MASKS, &message);
                 if let Some(open) = &mut state.open {
                     open.fragments.masks_refused = Some(message);
                 }
@@ -173,13 +179,14 @@ impl State {
         });
     }
 
-    /// Takes outlines of the photo of that name in the flight whose first reading had that number: it may have been read again since.
+    /// Takes outlines, of which that is to be said, of the photo of that name in the flight whose first reading had that number: it may have been read again since.
     fn take_outlines(
         &mut self,
         (first_number, name): &(u64, String),
         outlines: Outlines,
         regions: Option<Regions>,
         by: Outliner,
+        notes: Vec<String>,
     ) {
         let Some(open) = &mut self.open else {
             return;
@@ -207,14 +214,14 @@ impl State {
         fragments.refused = None;
         let count = count(&outlines);
         match fragments.photos.get_mut(&photo) {
-            Some(of) => of.outline_anew(&outlines, by),
+            Some(of) => of.outline_anew(&outlines, by, notes),
             None => {
-                let of = PhotoOutlines::first(&outlines, by);
+                let of = PhotoOutlines::first(&outlines, by, notes);
                 fragments.photos.insert(photo, of);
             }
         }
         let text = format!("{}: {count} fragments outlined", open.name(photo));
-        self.say(Severity::Note, &text);
+        self.say_of_place(Severity::Note, &text);
         self.measure_fragments();
     }
 }

@@ -7,7 +7,6 @@ use crate::flight::ScaleObject;
 use crate::geometry::{Bounds, LevelBox, Ray};
 use crate::linked::PointFrom;
 use crate::open_flight::picker::Purpose;
-use crate::open_flight::survey::SurveyStep;
 use crate::open_flight::table::SortBy;
 use crate::open_flight::{Measure, OpenFlight};
 use crate::render::PhotoZoom;
@@ -44,8 +43,8 @@ impl OpenFlight {
                 self.pointer.asked = asked;
                 self.ask_surveyor();
             }
-            Command::DoubleClick(_) if self.pointer.drawn.is_some() => {
-                self.survey(SurveyStep::Finish);
+            Command::DoubleClick(ray) if self.pointer.drawn.is_some() => {
+                self.pick(Purpose::EndDrawing, ray);
             }
             Command::Survey(step) => self.survey(step),
             Command::Pick(step) => self.pick_step(step),

@@ -26,10 +26,14 @@ pub enum Purpose {
     Measure,
     /// A point of what is drawn on the surface.
     Draw,
+    /// The double click that ends what is drawn on the surface, behind the points before it.
+    EndDrawing,
     /// A point for the list.
     Pick,
     /// A click on the page of the flight plan.
     Plan,
+    /// The double click that ends an area there, behind its corners.
+    EndArea,
 }
 
 /// A ray and what it met.

@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use crate::camera::{Camera, Pose};
 use crate::open_flight::picker::{Picked, Purpose};
+use crate::open_flight::survey::SurveyStep;
 use crate::open_flight::{Measure, OpenFlight};
 use crate::planning::PlanTool;
 
@@ -26,6 +27,7 @@ impl OpenFlight {
                     self.draw_at(point);
                 }
             }
+            Purpose::EndDrawing => self.survey(SurveyStep::Finish),
             Purpose::Pick => {
                 // A double click picks its place once.
                 let last = self.pointer.picked.list().last();
@@ -58,6 +60,8 @@ impl OpenFlight {
                 });
                 self.planning.select(photo);
             }
+            // The whole window has a part in it.
+            Purpose::EndArea => {}
             Purpose::Plan => {
                 if let Some(point) = point {
                     self.plan_at(point.truncate());

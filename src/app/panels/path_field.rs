@@ -39,6 +39,7 @@ pub(super) fn path_field(
     });
     let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
     takes_the_keys_at_first(ui, &field);
+    takes_the_keys_again(state, ui, &field, entered);
     ui.horizontal(|ui| {
         for (name, dialog) in browse {
             let hover = "Choose in the desktop's own dialog";
@@ -94,6 +95,18 @@ pub(super) fn in_a_folder(ui: &mut egui::Ui, taken: Option<PathBuf>) -> Option<P
         ui.colored_label(ui.visuals().error_fg_color, why);
     }
     taken
+}
+
+/// Where the window is still there behind Enter, what was named was not taken, or not yet: it is typed on in the same field.
+fn takes_the_keys_again(state: &State, ui: &egui::Ui, field: &egui::Response, entered: bool) {
+    let id = ui.scope_id().with("entered");
+    let before: bool = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    // A question is answered first, and who goes on elsewhere stays there.
+    let waits = before && state.held_back.is_some();
+    if before && !waits && ui.memory(|memory| memory.focused().is_none()) {
+        field.request_focus();
+    }
+    ui.data_mut(|data| data.insert_temp(id, entered || waits));
 }
 
 /// She asked for this window, so what she types or pastes next belongs into this field of it.

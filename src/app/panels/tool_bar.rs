@@ -109,7 +109,7 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         export.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Button, chosen > 0, "Export chosen photos")
         });
-        let export = match state.compares_colours() {
+        let export = match state.compares_photos() {
             true => export.on_hover_text(format!(
                 "{}\n{STILL_COMPARING}: a photo may still be doubted",
                 actions::file::EXPORT.hover

@@ -36,6 +36,7 @@ impl State {
     fn take_areas(&mut self, tool: PlanTool, read: Result<(Vec<Polygon>, Vec<String>), String>) {
         match read {
             Ok((areas, said)) => {
+                self.import_taken(Task::READ_AREAS);
                 for sentence in said {
                     self.say(Severity::Warning, &sentence);
                 }
@@ -46,7 +47,7 @@ impl State {
                     self.plan_step(super::PlanStep::Ask(Box::new(asked)));
                 }
             }
-            Err(why) => self.say(Severity::Error, &why),
+            Err(why) => self.refuse_import(Task::READ_AREAS, &why),
         }
     }
 }

@@ -68,11 +68,12 @@ impl State {
         };
         self.start(Task::FLOWN, work, |state, flown| match flown {
             Ok(flown) => {
+                state.import_taken(Task::FLOWN);
                 if let Some(open) = &mut state.open {
                     open.planning.flown = Some(Arc::new(flown));
                 }
             }
-            Err(error) => state.say(Severity::Error, &error.to_string()),
+            Err(error) => state.refuse_import(Task::FLOWN, &error.to_string()),
         });
     }
 

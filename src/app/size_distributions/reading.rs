@@ -159,12 +159,15 @@ impl State {
                 if !sources.is_empty() {
                     self.page = Page::SizeDistributions;
                 }
+                if sources.iter().any(Result::is_ok) {
+                    self.import_taken(Task::READ_DISTRIBUTIONS);
+                }
                 for source in sources {
                     match source {
                         Ok(source) => {
                             self.add_source(source);
                         }
-                        Err(why) => self.say(Severity::Error, &why),
+                        Err(why) => self.refuse_import(Task::READ_DISTRIBUTIONS, &why),
                     }
                 }
                 if !of_flight.is_empty() {
@@ -172,8 +175,8 @@ impl State {
                 }
             }
             Read::Pasted(Err(why)) => {
-                self.distributions.paste.refused = Some(why.clone());
-                self.say(Severity::Error, &why);
+                self.refuse_import(Task::READ_DISTRIBUTIONS, &why);
+                self.distributions.paste.refused = Some(why);
             }
             Read::Pasted(Ok(source)) => {
                 let name = source.name.clone();

@@ -22,7 +22,7 @@ use crate::photo_view::Middle;
 use crate::render::Gpu;
 use crate::season::SeasonList;
 use crate::size_distributions::{Page, SizeDistributions};
-use crate::tasks::work::Work;
+use crate::tasks::work::{Task, Work};
 use preferences::{Preferences, Theme};
 
 /// How many lines the log keeps.
@@ -110,6 +110,9 @@ impl Leaving {
     }
 }
 
+/// The page, and the photo that is selected.
+type Place = (Page, Option<usize>);
+
 /// The whole state of the window.
 pub struct State {
     /// For clipboard, theme and window; also what wakes the window up.
@@ -136,6 +139,10 @@ pub struct State {
     pub log: Vec<LogLine>,
     /// How many of its lines are of what was on the screen before this flight.
     log_before: usize,
+    /// What was said last of the photo on the screen, and where that was.
+    said_there: Option<(String, Place)>,
+    /// The import that was refused last, what was said of it, and where that was.
+    import_refused: Option<(Task, String, Place)>,
     /// What was said of the last undo or redo, and how many steps had been made until then.
     undo_said: Option<(String, u64)>,
     /// The last error, shown over the viewport until it is put away.
@@ -190,6 +197,8 @@ impl State {
             network: Network::default(),
             log: Vec::new(),
             log_before: 0,
+            said_there: None,
+            import_refused: None,
             undo_said: None,
             notice: None,
             tab: Tab::default(),
@@ -231,6 +240,43 @@ impl State {
         self.log.push(line);
     }
 
+    /// The same of something that matters on this page for this photo alone.
+    pub(crate) fn say_of_place(&mut self, severity: Severity, text: &str) {
+        self.say(severity, text);
+        let said = self.log.last().map(|line| line.text.clone());
+        self.said_there = said.map(|text| (text, self.place()));
+    }
+
+    /// Says that a file was not taken, until the next of its kind is, or another photo or page is looked at.
+    pub(crate) fn refuse_import(&mut self, task: Task, text: &str) {
+        self.say_of_place(Severity::Error, text);
+        let said = self.said_there.clone();
+        self.import_refused = said.map(|(text, place)| (task, text, place));
+    }
+
+    /// A file of that kind was taken: what was wrong with the one before is mended. The log keeps it.
+    pub(crate) fn import_taken(&mut self, task: Task) {
+        self.put_away_import(|(of, ..)| *of == task);
+    }
+
+    /// Another photo or page is looked at, perhaps: what was wrong with a file there is no matter here.
+    pub(crate) fn look_at_notice(&mut self) {
+        let now = self.place();
+        self.put_away_import(|(.., place)| *place != now);
+    }
+
+    fn put_away_import(&mut self, is_old: impl FnOnce(&(Task, String, Place)) -> bool) {
+        if let Some((_, text, _)) = self.import_refused.take_if(|refused| is_old(refused)) {
+            self.notice.take_if(|notice| notice.text == text);
+        }
+    }
+
+    /// What is looked at.
+    fn place(&self) -> Place {
+        let selected = self.open.as_ref().and_then(|open| open.selected);
+        (self.page, selected)
+    }
+
     /// Says what was undone or done again.
     pub(crate) fn say_undone(&mut self, text: &str) {
         self.say(Severity::Note, text);
@@ -238,13 +284,17 @@ impl State {
         self.undo_said = said.map(|text| (text, self.steps_made()));
     }
 
-    /// The line at the foot of the window: the last one of the log. What was undone is old once a new step is made.
+    /// The line at the foot of the window: the last one of the log. What was undone is old once a new step is made, and what was said of
+    /// a photo once another one is selected.
     pub fn last_said(&self) -> Option<&LogLine> {
         let last = self.log.last()?;
         let undone = self.undo_said.as_ref();
         let is_old =
             undone.is_some_and(|(text, steps)| *text == last.text && *steps != self.steps_made());
-        (!is_old).then_some(last)
+        let there = self.said_there.as_ref();
+        let (_, photo) = self.place();
+        let is_elsewhere = there.is_some_and(|(text, (_, of))| *text == last.text && *of != photo);
+        (!is_old && !is_elsewhere).then_some(last)
     }
 
     /// How many steps were made that undo goes back over.
@@ -295,6 +345,27 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Until the next one of its kind is taken, or another page is looked at; another error stays.
+    #[test]
+    fn a_refused_file_is_no_matter_elsewhere() {
+        let mut state = State::new(egui::Context::default(), Preferences::default());
+        let [tables, clouds] = ["Reading", "Cloud"].map(Task::new);
+        state.refuse_import(tables, "a.csv: it is empty");
+        state.import_taken(clouds);
+        state.look_at_notice();
+        assert!(state.notice.is_some());
+        state.import_taken(tables);
+        assert_eq!(state.notice, None);
+        state.refuse_import(tables, "b.csv: it is empty");
+        state.page = Page::Map;
+        state.look_at_notice();
+        assert_eq!(state.notice, None);
+        state.refuse_import(tables, "c.csv: it is empty");
+        state.say(Severity::Error, "not written");
+        state.import_taken(tables);
+        assert!(state.notice.is_some());
+    }
 
     #[test]
     fn warnings_are_of_the_flight_on_the_screen() {

@@ -7,7 +7,7 @@ use super::stood::changed_in_words;
 use super::work::Task;
 use crate::command::Destination;
 use crate::exports::{self, ExportRequest, Provenance, Replace};
-use crate::flight::Along;
+use crate::flight::{Along, Doubt};
 use crate::jobs::Progress;
 use crate::opening;
 use crate::scale::Onto;
@@ -100,15 +100,12 @@ impl State {
             let mut warnings = summary.warnings;
             warnings.extend(changed);
             let lost = review.photos().zip(seen.iter().zip(&selected));
-            warnings.extend(
-                lost.filter(|(_, (seen, is_selected))| **seen && !**is_selected)
-                    .map(|(photo, _)| {
-                        format!(
-                            "{}: not exported, its colours speak against it",
-                            photo.name()
-                        )
-                    }),
-            );
+            let lost = lost.filter(|(_, (seen, is_selected))| **seen && !**is_selected);
+            warnings.extend(lost.map(|(photo, _)| {
+                let why = photo.doubts.first().map(Doubt::to_string);
+                let why = why.unwrap_or_default();
+                format!("{}: not exported: {why}", photo.name())
+            }));
             Ok((sentence, warnings, name, begun.elapsed()))
         };
         self.start(Task::EXPORT, work, |state, exported: Result<_, String>| {

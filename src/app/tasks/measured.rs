@@ -58,8 +58,9 @@ impl State {
             };
             read(&path, &world, progress).map(|second| (path, second))
         };
-        self.start(task, work, |state, read| match read {
+        self.start(task, work, move |state, read| match read {
             Ok((path, second)) => {
+                state.import_taken(task);
                 for warning in &second.warnings {
                     state.say(Severity::Warning, warning);
                 }
@@ -68,7 +69,7 @@ impl State {
                     take(open, path, second);
                 }
             }
-            Err(error) => state.say(Severity::Error, &error.to_string()),
+            Err(error) => state.refuse_import(task, &error.to_string()),
         });
     }
 

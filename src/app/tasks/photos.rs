@@ -12,7 +12,7 @@ use crate::flight::{ColoursFound, Doubt, TogetherFound};
 use crate::formats::photos::photo_metadata;
 use crate::formats::{self, FileError};
 use crate::jobs::Progress;
-use crate::open_flight::{OpenFlight, Preview, PreviewPicture};
+use crate::open_flight::{Preview, PreviewPicture};
 use crate::opening::{Colours, PhotosTogether, Together};
 use crate::picture;
 use crate::render::{LargePhoto, PhotoImage};
@@ -38,9 +38,9 @@ impl Task {
     pub const PREVIEW: Self = Self::new("Photo").of_flight();
 }
 
-/// What is said while [`State::compares_colours`].
+/// What is said while [`State::compares_photos`].
 pub(crate) const STILL_COMPARING: &str =
-    "The photos' colours are still being compared with the surface's";
+    "The photos are still being compared with the surface and with each other";
 
 /// A reduced, undistorted photo on its way to the table and the viewport.
 struct Thumbnail {
@@ -59,13 +59,10 @@ struct Thumbnail {
 }
 
 impl State {
-    /// Whether the photos' colours are still being compared with the surface's: each is as it is read.
-    pub(crate) fn compares_colours(&self) -> bool {
-        let has_colours = |open: &OpenFlight| {
-            let surface = &open.flight().parts().surface;
-            !surface.colors().is_empty()
-        };
-        self.work.is_running(Task::THUMBNAILS) && self.open.as_deref().is_some_and(has_colours)
+    /// Whether the photos are still being compared: their colours as they are read, with those beside them, and behind the last what
+    /// follows from all.
+    pub(crate) fn compares_photos(&self) -> bool {
+        self.work.is_running(Task::THUMBNAILS)
     }
 
     /// Reads all photos, small.

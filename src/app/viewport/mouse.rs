@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::Scene;
+use crate::clicks::clicked_places;
 use crate::command::{Command, ViewChange};
 use crate::linked::PointFrom;
 use crate::open_flight::OpenFlight;
@@ -32,6 +33,15 @@ pub(super) fn mouse(
             )));
         }
     }
+    let ray_at = |at| scene.view.ray(scene.pixel(at), size);
+    let mut clicks = clicked_places(ui, response);
+    let last = match response.double_clicked() {
+        true => clicks.pop(),
+        false => None,
+    };
+    let is_clicked = last.is_some() || !clicks.is_empty();
+    commands.extend(clicks.into_iter().map(|at| Command::Click(ray_at(at))));
+    commands.extend(last.map(|at| Command::DoubleClick(ray_at(at))));
     let Some(at) = response.hover_pos() else {
         if open.pointer.from == Some(PointFrom::Pile) && !response.context_menu_opened() {
             commands.push(Command::Hover(PointFrom::Pile, None));
@@ -39,7 +49,6 @@ pub(super) fn mouse(
         return;
     };
     let cursor = scene.pixel(at);
-    let ray = scene.view.ray(cursor, size);
     let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
     let factor = (-f64::from(scroll) * 0.004).exp() / f64::from(pinch);
     if factor != 1.0 {
@@ -49,11 +58,7 @@ pub(super) fn mouse(
             factor,
         }));
     }
-    if response.double_clicked() {
-        commands.push(Command::DoubleClick(ray));
-    } else if response.clicked() {
-        commands.push(Command::Click(ray));
-    } else if !response.dragged() && !response.context_menu_opened() {
-        linked::hover(open, PointFrom::Pile, Some(ray), commands);
+    if !is_clicked && !response.dragged() && !response.context_menu_opened() {
+        linked::hover(open, PointFrom::Pile, Some(ray_at(at)), commands);
     }
 }

@@ -41,8 +41,16 @@ fn on_plate(
     let color = ui.visuals().text_color();
     let font = FontId::proportional(13.0);
     let galley = painter.layout_no_wrap(text.to_owned(), font, color);
+    let edge = vec2(5.0, 2.0);
     let place = anchor.anchor_size(at, galley.size());
-    let plate = place.expand2(vec2(5.0, 2.0));
+    // What belongs to something in sight is read whole beside the picture's edge.
+    let (sight, half) = (painter.clip_rect(), place.size() / 2.0 + edge);
+    let inside = Rect::from_min_max(sight.min + half, sight.max - half);
+    let place = match sight.contains(at) && inside.is_positive() {
+        true => Rect::from_center_size(inside.clamp(place.center()), place.size()),
+        false => place,
+    };
+    let plate = place.expand2(edge);
     painter.rect_filled(plate.expand(1.0), 4.0, rim);
     painter.rect_filled(plate, 3.0, ui.visuals().window_fill);
     painter.galley(place.min, galley, color);

@@ -156,6 +156,12 @@ pub(super) fn is_of_stem(one: &str, other: &str) -> bool {
     same_name::is_same(stem(one), stem(other))
 }
 
+/// Whether a file that calls its photo so may be of this one: letter case, ending and folder make no difference, and in fragscale's
+/// exports the folders stand in the name.
+pub(super) fn may_be_called(photo: &str, stated: &str) -> bool {
+    is_namesake(stated, photo) || same_name::key(stem(stated)) == with_folders(photo)
+}
+
 /// The folders of a photo's name, the last first.
 fn folders(photo: &str) -> impl Iterator<Item = &str> {
     let above = photo.rsplit(['/', '\\']).skip(1);

@@ -13,7 +13,8 @@ use crate::formats::{FileError, MaskFile, Masks, OutlinedPhoto};
 use crate::outlines::followed::not_followed;
 use crate::outlines::named_files::{
     also_taken_by, candidates, files_below, files_of_many, folders_shared, has_folder, is_anothers,
-    is_namesake, is_of_stem, is_photo, is_told_apart, may_be_outlines, names, told, with_photo,
+    is_namesake, is_of_stem, is_photo, is_told_apart, may_be_called, may_be_outlines, names, told,
+    with_photo,
 };
 use crate::outlines::turned;
 use crate::picture;
@@ -248,6 +249,15 @@ impl OutlinesOfOthers {
                 (path, &read)
             }
         };
+        // As in a file of many photos, the name that stands in it binds.
+        let is_another = |stated: &&str| !stated.trim().is_empty() && !may_be_called(name, stated);
+        if file.is_of_one()
+            && let Some(stated) = file.photos().find(is_another)
+        {
+            let what = format!("it has no outlines of {name}, but of {stated}");
+            let remedy = "give the outlines of this photo; where they are its own, correct the photo's name in the file";
+            return Err(named(path, Fault::new(what, remedy)));
+        }
         let is_undistorted = match self.of {
             Some(of) => of == ImageKind::Undistorted,
             None => file.is_own(),

@@ -71,8 +71,19 @@ pub(super) fn labels(view: &View, show: &Show, size: DVec2) -> Vec<Label> {
     };
     let unit = show.lengths_in;
     let way = b - a;
-    let [distance, level, up] =
-        [way.length(), way.truncate().length(), way.z].map(|length| significant_digits(length, 4));
+    let distance = significant_digits(way.length(), 4);
+    // Its parts are no surer than the whole.
+    let decimals = distance
+        .split_once('.')
+        .map_or(0, |(_, behind)| behind.len());
+    let [level, up] = [way.truncate().length(), way.z].map(|length| {
+        let length = format!("{length:.decimals$}");
+        let is_none = length.chars().all(|sign| matches!(sign, '-' | '0' | '.'));
+        match is_none {
+            true => length.trim_start_matches('-').to_owned(),
+            false => length,
+        }
+    });
     let middle = (from + to) * 0.5;
     let away = DVec2::Y * 8.0 * show.pixels_per_point;
     let label = |at, text, anchor| Label {
@@ -123,7 +134,7 @@ mod tests {
         };
         assert_eq!(told.text, "13.00 m");
         // 3 and 4 give 5.
-        assert_eq!(parts.text, "level 5.000 m, up 12.00 m");
+        assert_eq!(parts.text, "level 5.00 m, up 12.00 m");
         assert!(parts.at.distance(DVec2::new(315.0, 228.0)) < 1e-6);
         // Ten pixels a unit: 1.5 and 2 units off the middle, and 8 pixels up.
         assert!(
@@ -139,7 +150,23 @@ mod tests {
         };
         assert_eq!(
             labels(&view, &down, size)[1].text,
-            "level 5.000 m, up -12.00 m"
+            "level 5.00 m, up -12.00 m"
+        );
+        let nearly_level = Show {
+            measured: vec![origin, origin + DVec3::new(3.0, 4.0, -0.001)],
+            ..Show::default()
+        };
+        assert_eq!(
+            labels(&view, &nearly_level, size)[1].text,
+            "level 5.000 m, up -0.001 m"
+        );
+        let level = Show {
+            measured: vec![origin, origin + DVec3::new(30.0, 40.0, -0.001)],
+            ..Show::default()
+        };
+        assert_eq!(
+            labels(&view, &level, size)[1].text,
+            "level 50.00 m, up 0.00 m"
         );
         view.projection = Projection::Perspective { fov_y: 0.8 };
         view.eye = origin + DVec3::Z * 6.0;

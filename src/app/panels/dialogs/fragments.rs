@@ -33,8 +33,8 @@ pub(super) fn masks(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         for (kind, name, hover) in [
             (
                 None,
-                "the usual photo",
-                "Files that fragscale wrote: the undistorted photo; all others: the photo as shot",
+                "undistorted in fragscale's own files, else as shot",
+                "What most files are: those that fragscale wrote are of the undistorted photo, all others of the photo as shot",
             ),
             (
                 Some(ImageKind::AsShot),

@@ -31,6 +31,7 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.label("Photos that overlap by 70 % become a flight: cloud, poses and lens.");
     ui.add_space(4.0);
     let mut form = held.form.clone();
+    let mut entered = false;
     if form.node.chosen && run.is_some() {
         // So that the node's messages are seen in a small window, too.
         names::name(ui, &format!("{} at {}", form.photos, form.node.address));
@@ -39,13 +40,13 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         names::name(ui, &form.photos);
     } else {
         ui.add_enabled_ui(run.is_none(), |ui| {
-            folder_row(FolderField::Photos, &mut form, "", ui, commands);
+            entered |= folder_row(FolderField::Photos, &mut form, "", ui, commands);
             what_was_found(state, ui);
             ui.add_space(4.0);
             let proposed = held.found.as_ref();
             let proposed = proposed.map(|found| found.proposed.display().to_string());
             let hint = proposed.unwrap_or_default();
-            folder_row(FolderField::To, &mut form, &hint, ui, commands);
+            entered |= folder_row(FolderField::To, &mut form, &hint, ui, commands);
             engine_row(held, &mut form, ui);
             if form.node.chosen {
                 node_rows(&mut form.node, ui);
@@ -81,7 +82,7 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             progress(&sentence, fraction, (works, is_paused), ui, commands);
             messages(held, ui);
         }
-        None => start(held, &form, ui, commands),
+        None => start(held, &form, entered, ui, commands),
     }
 }
 
@@ -141,7 +142,7 @@ fn how_long(held: &FromPhotos, form: &FromPhotosForm, ui: &mut egui::Ui) {
         && let Some(time) = takes.get(chosen)
     {
         ui.weak(format!(
-            "It takes {time} on this computer, by rates of earlier runs."
+            "It takes {time} on this computer, estimated from its cores."
         ));
     }
 }
@@ -187,14 +188,14 @@ fn engine_row(held: &FromPhotos, form: &mut FromPhotosForm, ui: &mut egui::Ui) {
     });
 }
 
-/// A field for a folder, with the desktop's dialog. `hint` is what counts while it is empty.
+/// A field for a folder, with the desktop's dialog. `hint` is what counts while it is empty. Returns whether Enter was pressed in it.
 fn folder_row(
     field: FolderField,
     form: &mut FromPhotosForm,
     hint: &str,
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
-) {
+) -> bool {
     let (label, hover, text) = match field {
         FolderField::Photos => (
             "Folder of the photos",
@@ -208,9 +209,10 @@ fn folder_row(
         ),
     };
     ui.label(label);
-    ui.horizontal(|ui| {
+    let row = ui.horizontal(|ui| {
         let width = ui.available_width() - 80.0;
         let edit = path_line(ui, text, hint, width);
+        let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         if field == FolderField::Photos {
             crate::panels::path_field::takes_the_keys_at_first(ui, &edit);
         }
@@ -219,7 +221,9 @@ fn folder_row(
             let dialog = Dialog::folder(label).answering(Answers::FromPhotos(field));
             commands.push(Command::Browse(dialog));
         }
+        entered
     });
+    row.inner
 }
 
 fn what_was_found(state: &State, ui: &mut egui::Ui) {
@@ -332,7 +336,14 @@ fn progress(
     });
 }
 
-fn start(held: &FromPhotos, form: &FromPhotosForm, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+/// What the last run came to, and the button that starts one; so does Enter, where it was pressed in a field of a folder.
+fn start(
+    held: &FromPhotos,
+    form: &FromPhotosForm,
+    entered: bool,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
     let kept = "What was done is kept in that folder: Start goes on with it.";
     match &held.ended {
         None => {}
@@ -344,7 +355,9 @@ fn start(held: &FromPhotos, form: &FromPhotosForm, ui: &mut egui::Ui, commands: 
         }
         Some(Ended::Failed(why)) => {
             ui.colored_label(ui.visuals().error_fg_color, why);
-            ui.weak(kept);
+            if held.goes_on {
+                ui.weak(kept);
+            }
         }
         Some(Ended::Made(made)) => {
             for line in summary(made) {
@@ -372,7 +385,7 @@ fn start(held: &FromPhotos, form: &FromPhotosForm, ui: &mut egui::Ui, commands: 
         true => "First name a folder with three photos or more",
         false => "First type the node's address",
     });
-    if button.clicked() {
+    if button.clicked() || (entered && ready) {
         commands.push(Command::FromPhotos(FromPhotosStep::Start));
     }
 }

@@ -51,6 +51,8 @@ pub(super) fn found(
         );
         return;
     };
+    // How far to trust them goes before what they come to.
+    say(of.notes(), ui);
     let measured = of.measured();
     if let Some(number) = open.fragments.selected {
         selected(state, open, of, measured, number, ui, commands);

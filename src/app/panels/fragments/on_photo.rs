@@ -4,6 +4,7 @@ use egui::{Color32, Key, Modifiers, PointerButton, Pos2, Rect, Stroke, TextureHa
 use glam::DVec2;
 
 use super::{picture, tools};
+use crate::clicks::clicked_places;
 use crate::command::Command;
 use crate::fragments::{FragmentStep, FragmentTool};
 use crate::open_flight::OpenFlight;
@@ -85,13 +86,17 @@ impl OnPhoto {
                 send(FragmentStep::Stroke(stroke));
             }
         }
-        if response.clicked()
-            && let Some(at) = response.interact_pointer_pos()
-        {
+        let mut clicks = clicked_places(ui, response);
+        let is_begun = !open.fragments.drawing.is_empty() || clicks.len() > 1;
+        let ends = tool.outlines() && is_begun && response.double_clicked();
+        if ends {
+            // Its first click has put the corner, and the hand may have trembled since.
+            clicks.pop();
+        }
+        for at in clicks {
             send(FragmentStep::Click(under(at)));
         }
-        let ends = tool.outlines() && !open.fragments.drawing.is_empty();
-        if response.double_clicked() && ends {
+        if ends {
             send(FragmentStep::Finish);
         }
         by_hand || (response.double_clicked() && tool != FragmentTool::Select)

@@ -46,7 +46,8 @@ impl Inspector {
                 OnPhoto::Sides => "left and right scale".to_owned(),
                 OnPhoto::Field => "scale of its pixels".to_owned(),
             };
-            let label = format!("Reason on {}: {shown}", reviewed.name());
+            let what = open.reason().map_or("Scales", |_| "Reason");
+            let label = format!("{what} on {}: {shown}", reviewed.name());
             egui::WidgetInfo::labeled(egui::Role::Image, true, label)
         });
         let painter = ui.painter().with_clip_rect(row);

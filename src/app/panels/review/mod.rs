@@ -8,7 +8,7 @@ pub(super) use row_menu::row_menu;
 
 use crate::actions::{self, Action};
 use crate::command::{Command, ReviewStep};
-use crate::flight::{DecisionKind, PhotoReview};
+use crate::flight::{DecisionKind, OnPhoto, PhotoReview};
 use crate::names::{self, unbroken};
 use crate::open_flight::OpenFlight;
 use crate::panels::Scrolled;
@@ -44,9 +44,10 @@ pub(super) fn review(
         return;
     };
     heading(reviewed, ui);
-    if let Some(sight) = open.sight() {
-        inspector.reason_picture(state, open, (photo, reviewed), &sight.on_photo, ui);
-    }
+    let sight = open.sight().map(|sight| sight.on_photo);
+    // Where nothing speaks against it, what it goes along with.
+    let on_photo = sight.unwrap_or(OnPhoto::TopBottom);
+    inspector.reason_picture(state, open, (photo, reviewed), &on_photo, ui);
     egui::ScrollArea::vertical().show_focused(ui, |ui| {
         if !reviewed.is_doubtful() && open.review.is_looked_at() {
             ui.weak("Nothing speaks against the selected photo.");

@@ -7,6 +7,7 @@ use crate::command::Command;
 use crate::fragmentation::LabelledDistribution;
 use crate::names;
 use crate::numbers::significant_digits;
+use crate::panels::rows::text_width;
 use crate::size_distributions::drawing::MethodDrawing;
 use crate::size_distributions::{Computed, DistributionCommand};
 use crate::state::State;
@@ -130,8 +131,9 @@ fn check(
     let mixed = shown > 0 && !all;
     let font = egui::TextStyle::Button.resolve(ui.style());
     let spacing = ui.spacing();
-    // What else is in the row: the box itself, "reference", weights.
-    let others = spacing.icon_width + spacing.icon_spacing + 90.0;
+    // What else is in the row: the box itself, "reference", the weight.
+    let weight = weight_of(curves).map_or(0.0, |weight| text_width(ui, &weight));
+    let others = spacing.icon_width + spacing.icon_spacing + 90.0 + weight;
     let width = (ui.available_width() - others).max(40.0);
     let shown = names::fitted(ui, text, &font, width);
     let is_cut = *shown != *text;
@@ -154,10 +156,15 @@ fn check(
 
 /// The sum of the weights, where the input says them.
 fn weights(curves: &[&LabelledDistribution], ui: &mut egui::Ui) {
-    let known: Vec<f64> = curves.iter().filter_map(|curve| curve.weight).collect();
-    if !known.is_empty() {
-        let sum = significant_digits(known.iter().sum(), 4);
-        let text = ui.weak(format!("w {sum}"));
-        text.on_hover_text("Weight: the area or mass that it stands for, as the table gives it");
+    if let Some(weight) = weight_of(curves) {
+        let hover = "The area or mass that it stands for, as the table gives it";
+        ui.weak(weight).on_hover_text(hover);
     }
+}
+
+/// The same in words.
+fn weight_of(curves: &[&LabelledDistribution]) -> Option<String> {
+    let known: Vec<f64> = curves.iter().filter_map(|curve| curve.weight).collect();
+    let sum = || significant_digits(known.iter().sum(), 4);
+    (!known.is_empty()).then(|| format!("weight {}", sum()))
 }

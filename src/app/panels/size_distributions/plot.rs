@@ -1,6 +1,7 @@
 //! Percent passing, or percent error, over the size.
 
 use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
 
 use egui::Color32;
 use egui_plot::{
@@ -78,11 +79,11 @@ const LABEL_SPACING: egui::Rangef = egui::Rangef {
     max: 32.0,
 };
 
-/// A plot over the logarithm of the size, with the read-out under the mouse.
+/// A plot over the logarithm of the size, with the read-out under the mouse: of values that there are.
 fn over_size<'a>(
     name: &str,
     title: &str,
-    value: &'static str,
+    (value, values): (&'static str, RangeInclusive<f64>),
     computed: &'a Computed,
     ui: &egui::Ui,
 ) -> Plot<'a> {
@@ -121,9 +122,13 @@ fn over_size<'a>(
                 } => (*plot_name, position),
                 HoverPosition::Elsewhere { position } => ("", position),
             };
+            if name.is_empty() && !values.contains(&at.y) {
+                return None;
+            }
             let size = log_axis::size(at.x);
             let line = if name.is_empty() { "" } else { "\n" };
-            Some(format!("{name}{line}{size} {unit}\n{:.1} {value}", at.y))
+            let at = at.y.clamp(*values.start(), *values.end());
+            Some(format!("{name}{line}{size} {unit}\n{at:.1} {value}"))
         })
 }
 
@@ -175,7 +180,7 @@ fn passing(state: &State, computed: &Computed, reset: bool, ui: &mut egui::Ui) {
     let response = over_size(
         "percent passing",
         "Percent passing [%]",
-        "% passing",
+        ("% passing", 0.0..=100.0),
         computed,
         ui,
     )
@@ -296,7 +301,8 @@ fn errors(computed: &Computed, reset: bool, ui: &mut egui::Ui) {
     let title = "Percent error of the passing [%]";
     let methods = &computed.drawing.methods;
     let entries: Vec<String> = methods.iter().map(|m| entry(ui, &m.method)).collect();
-    let response = over_size("percent error", title, "% error", computed, ui)
+    let value = ("% error", f64::NEG_INFINITY..=f64::INFINITY);
+    let response = over_size("percent error", title, value, computed, ui)
         .include_y(-limit * 1.2)
         .include_y(limit * 1.2)
         .show(ui, |plot| {

@@ -22,13 +22,14 @@ const UNITS: [LengthUnit; 5] = [
 pub(super) fn settings(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
     let before = state.distributions.settings();
     let mut settings = before.clone();
+    let edge = ui.max_rect().right();
     Grid::new("distribution settings")
         .num_columns(2)
         .spacing([8.0, 4.0])
         .show(ui, |ui| {
             ui.label("Sizes in");
-            ui.horizontal(|ui| {
-                // Closer together: the column is as wide as they are.
+            ui.horizontal_wrapped(|ui| {
+                // Closer together: the column is as wide as they are, where it can be.
                 ui.spacing_mut().item_spacing.x = 2.0;
                 for unit in UNITS {
                     let chosen = settings.unit == unit;
@@ -47,9 +48,9 @@ pub(super) fn settings(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) 
             ui.label("Function");
             let models = Model::ALL.map(|model| (model, model.name().to_owned()));
             let hover = "Which function is fitted to the curves, by least squares";
-            choice("Function", hover, &models, &mut settings.model, ui);
+            choice("Function", hover, &models, &mut settings.model, edge, ui);
             ui.end_row();
-            reference(state, &mut settings, ui);
+            reference(state, &mut settings, edge, ui);
             ui.end_row();
             ui.label("Photos by");
             let weightings = [
@@ -59,14 +60,14 @@ pub(super) fn settings(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) 
             ];
             let hover = "What each photo counts by where the photos of a trial are merged; area and \
                          mass come from the table's column of weights";
-            choice("Merge photos by", hover, &weightings, &mut settings.merging, ui);
+            choice("Merge photos by", hover, &weightings, &mut settings.merging, edge, ui);
             ui.end_row();
             ui.label("Sieves");
             let mut sieves = vec![(None, "as measured".to_owned())];
             sieves.extend(SieveSeries::ALL.map(|series| (Some(series), series.name().to_owned())));
             let hover = "Bring every curve to the sieves of a series, linear in the logarithm of the \
                          size between its points";
-            choice("Sieves", hover, &sieves, &mut settings.sieves, ui);
+            choice("Sieves", hover, &sieves, &mut settings.sieves, edge, ui);
             ui.end_row();
             ui.label("Envelope ±");
             ui.horizontal(|ui| {
@@ -95,7 +96,7 @@ pub(super) fn settings(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) 
 }
 
 /// The method that the others are held against.
-fn reference(state: &State, settings: &mut Settings, ui: &mut Ui) {
+fn reference(state: &State, settings: &mut Settings, edge: f32, ui: &mut Ui) {
     ui.label("Reference");
     let computed = state.distributions.computed.as_ref();
     let methods = computed.map_or(&[][..], |computed| &computed.analysis.methods);
@@ -106,25 +107,31 @@ fn reference(state: &State, settings: &mut Settings, ui: &mut Ui) {
         .collect();
     let mut chosen = now.clone();
     let hover = "The method that the others are held against: the sieve";
-    choice("Reference", hover, &offered, &mut chosen, ui);
+    choice("Reference", hover, &offered, &mut chosen, edge, ui);
     if chosen != now {
         settings.reference = chosen;
     }
 }
 
-/// A list to choose from.
+/// How wide a list is where there is room, points, and where there is none.
+const LIST: f32 = 150.0;
+const NARROW_LIST: f32 = 60.0;
+
+/// A list to choose from, which ends before the panel's `edge`.
 fn choice<T: PartialEq + Clone>(
     name: &str,
     hover: &str,
     offered: &[(T, String)],
     chosen: &mut T,
+    edge: f32,
     ui: &mut Ui,
 ) {
+    let room = edge - ui.cursor().left();
     let text = offered.iter().find(|(value, _)| value == chosen);
     let text = text.map_or("–", |(_, text)| text.as_str());
     let combo = egui::ComboBox::from_id_salt(name)
         .selected_text(text)
-        .width(150.0)
+        .width(room.clamp(NARROW_LIST, LIST))
         .truncate()
         .show_ui(ui, |ui| {
             for (value, text) in offered {

@@ -45,8 +45,12 @@ fn item(
         remedy,
     } = finding;
     // As pending as holes are, and not what is known in the end.
-    let is_unknown = *item == HealthItem::Colours && *health == Health::Unknown;
-    let (short, says) = match is_unknown && state.compares_colours() {
+    let has_colours = state.open.as_ref().is_some_and(|open| {
+        let surface = &open.flight().parts().surface;
+        !surface.colors().is_empty()
+    });
+    let is_unknown = *item == HealthItem::Colours && *health == Health::Unknown && has_colours;
+    let (short, says) = match is_unknown && state.compares_photos() {
         true => ("…", format!("{STILL_COMPARING}.")),
         false => (short.as_str(), says.clone()),
     };

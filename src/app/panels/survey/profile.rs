@@ -13,6 +13,24 @@ use crate::survey::LEAST_BRIDGED;
 /// Points of the plot at most: more than any screen has columns.
 const MOST_POINTS: usize = 4000;
 
+/// How high the plot is, and what its axes take of its width and height, points.
+const HEIGHT: f32 = 170.0;
+const AXES: [f32; 2] = [55.0, 40.0];
+
+/// How many times as high as long a low relief is drawn, and how much of the plot's height it fills then, at most.
+const TIMES: [f64; 6] = [100.0, 50.0, 20.0, 10.0, 5.0, 2.0];
+const FILLED: f64 = 0.8;
+
+/// Of a line's length: a lower relief is drawn as if it were as high.
+const LEAST_RELIEF: f64 = 0.01;
+
+/// How many times as high as long a profile is drawn, so that its relief is seen; `room` is the plot's, points.
+fn times_as_high(relief: f64, length: f64, [width, height]: [f32; 2]) -> f64 {
+    let most = FILLED * length * f64::from(height / width.max(1.0));
+    let mut times = TIMES.into_iter();
+    times.find(|times| times * relief <= most).unwrap_or(1.0)
+}
+
 pub(super) fn profile(
     open: &OpenFlight,
     drawn: &Drawn,
@@ -24,21 +42,40 @@ pub(super) fn profile(
     };
     let parts = open.flight().parts();
     let unit = parts.unit_of_lengths();
+    if !drawn.finished {
+        // The plot would lie over the place of the next point.
+        ui.label(format!("So far {:.3} {unit} in plan", profile.length));
+        return;
+    }
     let faces = profile.faces();
     let color = ui.visuals().hyperlink_color;
     // Every so many of the points; the ends of holes always.
     let step = profile.points().count().div_ceil(MOST_POINTS).max(1);
+    let heights = profile.points().map(|at| at.point.z);
+    let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| {
+        [low.min(z), high.max(z)]
+    });
+    let relief = (high - low).max(LEAST_RELIEF * profile.length);
+    let room = [ui.available_width() - AXES[0], HEIGHT - AXES[1]];
+    let times = times_as_high(relief, profile.length, room);
+    let of_height = match times > 1.0 {
+        true => format!("Height [{unit}], × {times}"),
+        false => format!("Height [{unit}]"),
+    };
+    let middle = low.midpoint(high);
     Plot::new("profile plot")
-        .height(170.0)
-        .data_aspect(1.0)
+        .height(HEIGHT)
+        .data_aspect(times as f32)
+        .include_y(middle - 0.5 * relief)
+        .include_y(middle + 0.5 * relief)
         .allow_scroll(false)
         .custom_x_axes(vec![
-            // Closer than usual: with equal scales on both axes a narrow plot has no other distances.
+            // Closer than usual: with the scales of both axes bound to each other a narrow plot has no other distances.
             AxisHints::new_x()
                 .label(format!("Along the line [{unit}]"))
                 .label_spacing(30.0..=50.0),
         ])
-        .custom_y_axes(vec![AxisHints::new_y().label(format!("Height [{unit}]"))])
+        .custom_y_axes(vec![AxisHints::new_y().label(of_height)])
         .show(ui, |plot| {
             for run in &profile.runs {
                 let last = run.len() - 1;
@@ -116,4 +153,21 @@ pub(super) fn profile(
         }
         save(MeasuredTable::Profile, ui, commands);
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_low_relief_is_drawn_higher() {
+        let room = [385.0, 130.0];
+        let times = |relief: f64, length: f64| times_as_high(relief, length, room);
+        // A flank of 3 in 4 is drawn as it is; gravel on a floor is seen.
+        assert_eq!(times(0.25, 1.2), 1.0);
+        assert_eq!(times(0.036, 1.2), 5.0);
+        assert_eq!(times(0.36, 12.0), 5.0);
+        // A plane is drawn as one.
+        assert_eq!(times(LEAST_RELIEF * 12.0, 12.0), 20.0);
+    }
 }

@@ -214,7 +214,7 @@ impl State {
             work,
             move |state, made: Result<Reconstructed, FileError>| match made {
                 Ok(made) => state.take_reconstructed(made, opened),
-                Err(error) => state.take_failed(error.to_string()),
+                Err(error) => state.take_failed(error.to_string(), may_go_on(&error.fault)),
             },
         );
     }
@@ -223,7 +223,7 @@ impl State {
     fn start_on_node(&mut self, of: Request, node: &NodeForm) {
         let request = match on_node(of, node) {
             Ok(request) => request,
-            Err(fault) => return self.take_failed(fault.to_string()),
+            Err(fault) => return self.take_failed(fault.to_string(), false),
         };
         let told = Arc::new(Mutex::new(FromNode::default()));
         self.from_photos.node = Some(told.clone());
@@ -289,7 +289,8 @@ impl State {
         }
     }
 
-    fn take_failed(&mut self, why: String) {
+    /// `goes_on`: the same run once more goes on where this one stopped.
+    fn take_failed(&mut self, why: String, goes_on: bool) {
         let is_seen = self.asking == Some(Asking::FromPhotos);
         let before = self.notice.take();
         self.say(Severity::Error, &why);
@@ -298,7 +299,13 @@ impl State {
             self.notice = before;
         }
         self.from_photos.ended = Some(Ended::Failed(why));
+        self.from_photos.goes_on = goes_on;
     }
+}
+
+/// Whether the same run once more can come to an end: where the disk stopped it. Of the same photos nothing else comes than before.
+fn may_go_on(fault: &Fault) -> bool {
+    fault.remedy.contains("disk")
 }
 
 /// What is asked of a node.

@@ -336,3 +336,29 @@ fn outlines_of_a_photo_on_its_side_are_turned_back() {
         .unwrap();
     assert!(!plain.notes.iter().any(|note| note.contains("viewers")));
 }
+
+/// As a file of many photos that has none of this one: what LabelMe says of its photo counts, letter case, ending and folder do not.
+#[test]
+fn a_file_that_names_another_photo_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("stones.json");
+    let read = |stated: &str, name: &str| {
+        let text = format!(
+            r#"{{"shapes": [{{"label": "rock", "points": [[1, 1], [3, 1], [3, 3], [1, 3]]}}],
+            "imagePath": "{stated}", "imageHeight": 4, "imageWidth": 4}}"#
+        );
+        fs::write(&path, text).unwrap();
+        let others = OutlinesOfOthers::open(&path, None).unwrap();
+        others.of_photo(name, &["IMG_0001.jpg", name], (&camera(4, 4), 1), true)
+    };
+    for own in ["IMG_0003.jpg", "../photos/img_0003.PNG", ""] {
+        let masks = read(own, "IMG_0003.jpg").unwrap();
+        assert_eq!(masks.labels.labels[5], 1, "{own}");
+    }
+    // As fragscale exports a photo of a folder.
+    assert!(read("d1_A.jpg", "d1/A.jpg").is_ok());
+    let fault = read("IMG_0001.jpg", "IMG_0003.jpg").unwrap_err();
+    let words = "stones.json: it has no outlines of IMG_0003.jpg, but of IMG_0001.jpg";
+    assert!(fault.what.ends_with(words), "{fault}");
+    assert!(read("d2_A.jpg", "d1/A.jpg").is_err());
+}
