@@ -190,8 +190,9 @@ fn fill(
 ) -> Result<(), Fault> {
     let random = Random::new(options.seed);
     let mut shots = recipe.flight.fly(&mut random.fork(20));
-    shots.extend(recipe.flight.ring(options.ring, &mut random.fork(21)));
+    // Scale objects are laid out for these: those of a ring would all lie where it looks, a heap of spheres.
     let scene_shots = shots.len();
+    shots.extend(recipe.flight.ring(options.ring, &mut random.fork(21)));
     if options.survey.is_some() {
         if recipe.epsg.is_none() {
             let what = "there is no receiver's position without a coordinate system";

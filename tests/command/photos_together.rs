@@ -4,13 +4,13 @@
 use std::fs;
 use std::path::Path;
 
-use crate::common::{scales_json, stdout_of};
+use crate::common::{fragscale, scales_json, stdout_of};
 
 /// Bytes of a vertex in the flight's cloud: three doubles, three bytes of colour.
 const VERTEX: usize = 27;
 
-/// Copies the bundled flight with its cloud `up` metres higher and without colours.
-fn without_colours(folder: &Path, up: f64) {
+/// Copies the bundled flight with these `heights`, metres, of its cloud's, and without colours.
+fn without_colours(folder: &Path, heights: impl Fn(f64) -> f64) {
     let from = Path::new("assets/sample");
     fs::create_dir(folder.join("photos")).expect("made");
     for photo in fs::read_dir(from.join("photos")).expect("listed").flatten() {
@@ -31,7 +31,7 @@ fn without_colours(folder: &Path, up: f64) {
     for vertex in bytes[start..].chunks_exact(VERTEX) {
         out.extend(&vertex[..16]);
         let z = f64::from_le_bytes(vertex[16..24].try_into().expect("8 bytes"));
-        out.extend((z + up).to_le_bytes());
+        out.extend(heights(z).to_le_bytes());
     }
     fs::write(folder.join("pile.ply"), out).expect("written");
 }
@@ -41,7 +41,7 @@ fn without_colours(folder: &Path, up: f64) {
 #[test]
 fn a_surface_that_is_too_high_is_seen_farther_away() {
     let folder = tempfile::tempdir().expect("a folder");
-    without_colours(folder.path(), 0.03);
+    without_colours(folder.path(), |z| z + 0.03);
     let scales = scales_json(folder.path(), &[]);
     let photos = scales["photos"].as_array().expect("photos");
     let mut doubted = 0;
@@ -76,7 +76,7 @@ fn a_surface_that_is_too_high_is_seen_farther_away() {
 #[test]
 fn a_right_surface_is_seen_where_it_is() {
     let folder = tempfile::tempdir().expect("a folder");
-    without_colours(folder.path(), 0.0);
+    without_colours(folder.path(), |z| z);
     let text = stdout_of(&["check", folder.path().to_str().expect("UTF-8")]);
     let there = text
         .lines()
@@ -91,6 +91,24 @@ fn a_right_surface_is_seen_where_it_is() {
     assert!(text.contains(hole), "{text}");
     let scales = scales_json(folder.path(), &[]);
     assert!(!scales.to_string().contains("than it is"), "{scales}");
+    // Of the three beside none nothing says that they are of this place, which is said.
+    let scales = fragscale(&["scales", folder.path().to_str().expect("UTF-8")]);
+    let said = String::from_utf8_lossy(&scales.stderr);
+    let alone =
+        "3 of 9 photos were compared with nothing (IMG_0007.jpg, IMG_0008.jpg, IMG_0009.jpg)";
+    assert!(said.contains(alone), "{said}");
+}
+
+/// Heights with the wrong sign: stones are hollows, by which nothing is alike, and nothing is clearly unlike.
+#[test]
+fn where_no_photo_tells_none_is_trusted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    without_colours(folder.path(), |z| 0.08 - z);
+    let scales = scales_json(folder.path(), &[]);
+    let photos = scales["photos"].as_array().expect("photos");
+    let trusted = photos.iter().filter(|photo| photo["verdict"] == "trust");
+    assert_eq!(trusted.count(), 0);
+    assert!(scales.to_string().contains("none of the 4 photos"));
 }
 
 /// Names moved on by one, and two photos swapped, over a cloud without colours: nothing but the photos tells it. Once none was doubted, as
@@ -98,14 +116,16 @@ fn a_right_surface_is_seen_where_it_is() {
 #[test]
 fn renamed_photos_over_a_cloud_without_colours_are_doubted() {
     let folder = tempfile::tempdir().expect("a folder");
-    without_colours(folder.path(), 0.0);
+    without_colours(folder.path(), |z| z);
     let photo = |number: usize| folder.path().join(format!("photos/IMG_000{number}.jpg"));
     let rename = |from: &Path, to: &Path| fs::rename(from, to).expect("renamed");
     let doubted = || -> Vec<usize> {
         let scales = scales_json(folder.path(), &[]);
         let photos = scales["photos"].as_array().expect("photos").clone();
         let reasons = |at: &usize| photos[at - 1]["reasons"].to_string();
-        let all = (1..=9).filter(|at| reasons(at).contains("alike"));
+        let words = ["alike", "compared with those beside them"];
+        let is_doubted = |at: &usize| words.iter().any(|words| reasons(at).contains(words));
+        let all = (1..=9).filter(is_doubted);
         all.collect()
     };
     let kept = folder.path().join("kept.jpg");

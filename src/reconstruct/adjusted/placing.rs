@@ -100,7 +100,7 @@ pub(super) fn place(
     let rounds = [
         Weighed::ItsPixels,
         Weighed::ItsPixels,
-        Weighed::ItsSquarePixels,
+        Weighed::ItsBestSquarePixels,
     ];
     for (number, weighed) in (0..).zip(rounds) {
         progress.advance(number, 3)?;

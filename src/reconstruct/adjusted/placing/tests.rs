@@ -48,6 +48,8 @@ struct Survey {
     zooms: Vec<f64>,
     /// How well photos see points, pixels.
     seen_to: f64,
+    /// So many of them ten times worse, a part.
+    far: f64,
     points: Vec<DVec3>,
     /// Those of the model, in its order.
     of_model: Vec<DVec3>,
@@ -66,6 +68,7 @@ impl Survey {
             receivers: DVec3::new(2.0, 2.0, 5.0),
             stated,
             seen_to: SEEN_TO,
+            far: 0.0,
             points: points.collect(),
             of_model: Vec::new(),
             noise,
@@ -128,7 +131,9 @@ impl Survey {
                 let Some(pixel) = truth.cam_to_img(&to_vector(seen)) else {
                     continue;
                 };
-                let off = self.noise.vector(DVec3::splat(self.seen_to));
+                let is_far = self.far > 0.0 && self.noise.0.unit() < self.far;
+                let seen_to = self.seen_to * if is_far { 10.0 } else { 1.0 };
+                let off = self.noise.vector(DVec3::splat(seen_to));
                 let pixel = Vec2::new(pixel.x + off.x, pixel.y + off.y);
                 if (0.0..4000.0).contains(&pixel.x) && (0.0..3000.0).contains(&pixel.y) {
                     track.push(TrackEntry::new(id, u32::try_from(pixels.len()).unwrap()));
@@ -258,9 +263,11 @@ fn scales_hang_on_a_stated_focal_length_as_little_as_is_said() {
             });
             for found in &found {
                 let (off, said) = (found.off, found.sure.focal_in_scales[0]);
-                assert!((found.sure.pixel / SEEN_TO - 1.0).abs() < 0.06);
+                // What lies far counts less, so that more is left over than where squares are least: up to an eighth of three photos.
+                let pixel = found.sure.pixel / SEEN_TO;
+                assert!((0.94..1.125).contains(&pixel), "{pixel}");
                 assert!(off.abs() < 2.5 * said, "{count}: {off} of {said}");
-                assert!(said < 0.0015, "{count}: {said}");
+                assert!(said < 0.0016, "{count}: {said}");
                 let stretched = found.stretched;
                 assert!(stretched.abs() < 0.002, "{count}: {stretched}");
             }
@@ -403,6 +410,33 @@ fn where_no_length_stands_out_the_farthest_has_to_fit_better() {
         place(&mut model, &whose, &Progress::default()).unwrap();
         assert_eq!(model.cameras().len(), 1 + usize::from(zoom != 1.0));
     }
+}
+
+/// A fifth of the points that are seen ten times worse leave the ways cameras look nearly as sure as none does; weighed alike they
+/// would make them 4.5 times less so (the root of 0.8 and 0.2 times 100).
+#[test]
+fn points_that_are_seen_badly_do_little_harm() {
+    let off = |far: f64| -> f64 {
+        let of_seed = |seed: u64| {
+            let centers = thirteen(&mut Noise(SplitMix(seed + 50)));
+            let mut survey = Survey::new(centers, (0.0, 0.02), seed);
+            survey.receivers = DVec3::splat(0.02);
+            survey.far = far;
+            let photos = survey.photos();
+            let mut model = survey.grown();
+            let whose = Whose::of(&model, &photos);
+            place(&mut model, &whose, &Progress::default()).unwrap();
+            let images = model.registered_images();
+            let off = images.iter().map(|&image| {
+                let looks = pose(&model.world_to_cam(image).unwrap()).rotation * DVec3::Z;
+                looks.truncate().length_squared()
+            });
+            off.sum::<f64>() / images.len() as f64
+        };
+        (0..4).map(of_seed).sum::<f64>().sqrt()
+    };
+    let (none, far) = (off(0.0), off(0.2));
+    assert!(far < 1.6 * none, "{none} {far}");
 }
 
 /// Positions whose longitudes lack their minus: the mirror would be looked at from behind, and is not.
