@@ -1,4 +1,5 @@
 //! Where the mouse clicked. A frame that takes long gets all that was clicked meanwhile, and egui says where the mouse is by then.
+//! (Where that is outside of the part, egui gives all clicks of the frame to another one: they are lost.)
 
 use egui::{Event, PointerButton, Pos2};
 
@@ -13,7 +14,14 @@ pub(crate) fn clicked_places(ui: &egui::Ui, response: &egui::Response) -> Vec<Po
         .options(|options| options.input_options.max_click_dist);
     let ends_drag = response.drag_stopped();
     let mut clicks = ui.input(|input| places(&input.events, reach, ends_drag));
-    clicks.retain(|place| response.interact_rect.contains(*place));
+    // What floats over it has its own.
+    let is_its = |place: Pos2| {
+        let layer = ui.ctx().layer_id_at(place);
+        response.interact_rect.contains(place) && layer == Some(response.layer_id)
+    };
+    clicks.retain(|place| is_its(*place));
+    // The second of a double click, and a hand that trembles, put nothing twice.
+    clicks.dedup_by(|next, before| next.distance(*before) <= reach);
     clicks
 }
 

@@ -116,7 +116,7 @@ fn look_at(
         let together = together.map(|(_, together)| together.in_words());
         // Without colours nothing but those beside it speaks for a photo, and nothing does if none is.
         let evidence = review.looked_up().evidence.get(index);
-        let is_alone = !has_colours && evidence.is_some_and(Evidence::is_unconfirmed);
+        let is_alone = evidence.is_some_and(Evidence::is_unconfirmed);
         let alone = is_alone.then(|| {
             "compared with nothing: no photo from beside it shows enough of the same rock"
                 .to_owned()

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::ReportObject;
 use crate::fault::{Fault, first_names};
-use crate::flight::{Doubt, Evidence, PhotoReview, Review, ScaleObject};
+use crate::flight::{Doubt, Evidence, PhotoReview, Review, ScaleObject, Verdict};
 use crate::numbers::{farther_percent, is_width};
 use crate::scale::{
     EdgeScales, ErrorSource, FittedScale, ImageKind, ScaleEstimate, ScalePair, Uncertainty,
@@ -125,21 +125,27 @@ impl<'a> ScaleReport<'a> {
         self.grouped(|line| line.why_not_trusted())
     }
 
-    /// Which photos with a scale were compared with nothing, in a sentence; `None` where all were, or nobody has compared any.
+    /// Which photos that are trusted by themselves were compared with nothing, in a sentence; `None` where all were, or nobody has compared
+    /// any.
     pub fn unconfirmed(&self) -> Option<String> {
         let evidence = &self.review.looked_up().evidence;
-        let is_unconfirmed = |line: &PhotoLine<'_>| {
-            let evidence = evidence.get(line.index);
-            line.photo.scale().is_some() && evidence.is_some_and(Evidence::is_unconfirmed)
+        // What a person has decided she has looked at.
+        let is_trusted = |line: &PhotoLine<'_>| {
+            line.photo.verdict == Verdict::Trust && line.photo.decision.is_none()
         };
-        let names = self.lines().filter(is_unconfirmed);
+        let trusted: Vec<PhotoLine<'_>> = self.lines().filter(is_trusted).collect();
+        let is_unconfirmed = |line: &&PhotoLine<'_>| {
+            let evidence = evidence.get(line.index);
+            evidence.is_some_and(Evidence::is_unconfirmed)
+        };
+        let names = trusted.iter().filter(is_unconfirmed);
         let names: Vec<&str> = names.map(|line| line.photo.name()).collect();
         (!names.is_empty()).then(|| {
             format!(
-                "{} of {} photos were compared with nothing ({}): the surface shows no colours there, and no photo beside them shows enough \
-                 of the same rock. Look whether they show this place",
+                "{} of {} trusted photos were compared with nothing ({}): no colours of the surface tell there, and no photo from beside them \
+                 shows enough of the same rock. Look whether they show this place",
                 names.len(),
-                self.photos.len(),
+                trusted.len(),
                 first_names(&names)
             )
         })

@@ -61,8 +61,8 @@ pub use poses::position_list::{
 };
 pub use poses::trajectory::TrajectoryFormat;
 pub use read::{
-    read_camera, read_camera_mount, read_cloud, read_cloud_bytes, read_cloud_sample, read_poses,
-    read_project, read_trajectory,
+    no_surface_but_places, read_camera, read_camera_mount, read_cloud, read_cloud_bytes,
+    read_cloud_sample, read_poses, read_project, read_trajectory,
 };
 pub use tables::effort_table::{effort_table, read_effort_table};
 pub use tables::grouped_values::{GroupedValues, Groups, grouped_values, read_grouped_values};

@@ -42,7 +42,7 @@ pub fn read_cloud(path: &Path, progress: &Progress) -> Result<CloudFile, FileErr
     let input = BufReader::with_capacity(1 << 18, file);
     let beside = |name: &str| gltf::read_beside(path, name);
     read_cloud_as(format, input, size, &beside, progress)
-        .map_err(|fault| FileError::new(path, known_places(path, format).unwrap_or(fault)))
+        .map_err(|fault| FileError::new(path, no_surface_but_places(path, format).unwrap_or(fault)))
 }
 
 /// A sample of a LAS, LAZ or COPC file of millions of points, in a second or two, with how many it has in all:
@@ -56,8 +56,8 @@ pub fn read_cloud_sample(path: &Path, progress: &Progress) -> Option<(CloudFile,
     las::sample::read_sample(input, progress)
 }
 
-/// What to do with a text that is no cloud because it lists places for georeferencing, or what is wrong with the list.
-fn known_places(path: &Path, format: CloudFormat) -> Option<Fault> {
+/// What to do with a text that is no cloud because it lists places for georeferencing, or what is wrong with the list; `None` of others.
+pub fn no_surface_but_places(path: &Path, format: CloudFormat) -> Option<Fault> {
     if format != CloudFormat::Xyz {
         return None;
     }

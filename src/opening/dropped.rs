@@ -7,7 +7,7 @@ use crate::fault::Fault;
 use crate::files::FileError;
 use crate::formats::missions::no_flight_but_mission;
 use crate::formats::tables::size_distributions::no_flight_but_sizes;
-use crate::formats::{Kind, Package, detect};
+use crate::formats::{Kind, Package, detect, no_surface_but_places};
 use crate::meant::is_of_their_photos;
 
 /// How several of them are called.
@@ -39,7 +39,13 @@ impl Dropped {
                 kind => kind?,
             };
             let (part, name) = match kind {
-                Kind::Cloud(_) => (&mut dropped.options.surface, "surfaces"),
+                Kind::Cloud(format) => {
+                    // Told before it counts as a second surface.
+                    if let Some(fault) = no_surface_but_places(path, format) {
+                        return Err(FileError::new(path, fault));
+                    }
+                    (&mut dropped.options.surface, "surfaces")
+                }
                 Kind::Reconstruction(Package::Photos, _) => (&mut photos, PHOTOS),
                 Kind::Flight(_) | Kind::Reconstruction(..) => (&mut dropped.flight, "flights"),
                 Kind::SizeDistributions => {

@@ -445,7 +445,7 @@ fn distance(review: &Review) -> Option<HealthFinding> {
     let seen = share(there.len(), review);
     let rest = match there.len() == review.count() {
         true => "",
-        false => " The others do not tell, or are beside none.",
+        false => " The others do not say so: they do not tell, or are beside none.",
     };
     let says = format!(
         "{seen} see the surface where it is, together with those beside them: within {:.1} % of its distance.{rest}",

@@ -47,8 +47,8 @@ pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
         Kind::Cloud(CloudFormat::Xyz) => match read_known_places(path) {
             // Which have columns like a cloud's.
             Some(Ok(places)) => places_info(&places),
-            // A cloud can have names of classes; where it is none, its reader says what is wrong with the list.
-            _ => cloud_info(&read_cloud(path, progress)?),
+            Some(Err(fault)) => return Err(FileError::new(path, fault)),
+            None => cloud_info(&read_cloud(path, progress)?),
         },
         Kind::Cloud(_) => cloud_info(&read_cloud(path, progress)?),
         Kind::Camera => camera_info(&read_camera(path)?),

@@ -30,7 +30,8 @@ const WORTH_SAYING: f64 = 0.05;
 
 /// The lowest flight, in metres, whose heights are compared to 5 %: below it the barometer's own error is beyond that ...
 const LOWEST: f64 = 10.0;
-/// ... and what is off by so many metres is said, four times that error: a model of ten times its size.
+/// ... and what is off by so many metres is said, four times that error: a model of ten times its size. In the hand a drone says
+/// less than it stands high.
 const OFF_IN_LOW: f64 = 2.0;
 
 /// Compares a flight with its photo files, which are in the order of its photos.
@@ -191,7 +192,7 @@ fn check_distances(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding>
     let (mut above, mut ahead, mut take_offs) = (Vec::new(), Vec::new(), Vec::new());
     for (_, photo, metadata) in described {
         let pose = &photo.pose;
-        if let Some(stated) = metadata.relative_altitude.filter(|&h| h > 0.0)
+        if let Some(stated) = metadata.relative_altitude.filter(|&h| h > OFF_IN_LOW)
             && let Some(height) = distance(pose.center, DVec3::NEG_Z)
         {
             above.push((height, stated));

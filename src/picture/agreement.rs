@@ -24,7 +24,7 @@ pub(super) const COMPARED: u32 = 512;
 const LOOKED_AT: usize = 200_000;
 
 /// In how many pixels of a photo they are compared, each with a ray; the standard error of r is under 1/sqrt(n).
-const COMPARED_IN: usize = 10_000;
+const COMPARED_IN: usize = 5000;
 
 /// What is met so much nearer hides a vertex, as a share of its distance: noise and the triangles beside it lie closer.
 const HIDES: f64 = 0.02;
@@ -91,7 +91,7 @@ pub fn for_comparing(photo: &RgbImage, camera: &Camera) -> Option<RgbImage> {
 }
 
 impl Agreement {
-    /// Compares a surface's colours with a photo, which is that of [`for_comparing`].
+    /// Compares a surface's colours with a photo, which is that of [`for_comparing`], one of so many `photos` that are.
     ///
     /// # Errors
     /// Why there is nothing to compare.
@@ -100,12 +100,13 @@ impl Agreement {
         camera: &Camera,
         pose: &Pose,
         photo: Option<&RgbImage>,
+        photos: usize,
     ) -> Result<Self, NotComparable> {
         if surface.colors().is_empty() {
             return Err(NotComparable::NoColours);
         }
         let photo = photo.ok_or(NotComparable::OtherSize)?;
-        Self::of(surface, camera, pose, photo)
+        Self::of(surface, camera, pose, photo, photos)
     }
 
     /// Compares a surface's colours with an undistorted photo of any size.
@@ -114,6 +115,7 @@ impl Agreement {
         camera: &Camera,
         pose: &Pose,
         undistorted: &RgbImage,
+        photos: usize,
     ) -> Result<Self, NotComparable> {
         let colors = surface.colors();
         if colors.is_empty() {
@@ -143,27 +145,36 @@ impl Agreement {
         let pixels = || inside.chunk_by(|a, b| a.pixel == b.pixel);
         let count = pixels().count();
         let step = count.div_ceil(COMPARED_IN).max(1);
-        let mut caster = surface.caster_for(count / step).ok();
-        let seen: Vec<(f64, [f64; 2])> = pixels()
-            .step_by(step)
-            .filter_map(|vertices| {
-                let nearest = vertices.first()?;
-                let ray = Ray {
-                    origin: pose.center,
-                    direction: (nearest.at - pose.center).normalize(),
-                };
-                // A surface that nothing can be cast at says so where scales are asked of it.
-                let met = caster.as_mut().and_then(|caster| caster.cast(&ray));
-                let is_hidden = met.is_some_and(|met| met.t < (1.0 - HIDES) * nearest.distance);
-                let beside = vertices
-                    .iter()
-                    .take_while(|vertex| vertex.distance <= (1.0 + HIDES) * nearest.distance);
-                let (sum, count) = beside.fold((0.0, 0.0), |(sum, count), vertex| {
-                    (sum + vertex.brightness, count + 1.0)
-                });
-                (!is_hidden).then_some((sum / count, nearest.place))
-            })
-            .collect();
+        // Of all photos together: a mesh of the whole surface may pay for them.
+        let mut caster = surface.caster_for(photos.saturating_mul(count / step)).ok();
+        let (mut seen, mut hidden) = (Vec::new(), Vec::new());
+        for vertices in pixels().step_by(step) {
+            let Some(nearest) = vertices.first() else {
+                continue;
+            };
+            let ray = Ray {
+                origin: pose.center,
+                direction: (nearest.at - pose.center).normalize(),
+            };
+            // A surface that nothing can be cast at says so where scales are asked of it.
+            let met = caster.as_mut().and_then(|caster| caster.cast(&ray));
+            let is_hidden = met.is_some_and(|met| met.t < (1.0 - HIDES) * nearest.distance);
+            let beside = vertices
+                .iter()
+                .take_while(|vertex| vertex.distance <= (1.0 + HIDES) * nearest.distance);
+            let (sum, count) = beside.fold((0.0, 0.0), |(sum, count), vertex| {
+                (sum + vertex.brightness, count + 1.0)
+            });
+            let place = (sum / count, nearest.place);
+            match is_hidden {
+                true => hidden.push(place),
+                false => seen.push(place),
+            }
+        }
+        // A photo that sees hardly anything by its pose stands behind something, or does not stand there: all is held against it.
+        if seen.len() < FEWEST {
+            seen.append(&mut hidden);
+        }
         match seen.len() {
             0 => return Err(NotComparable::NotInPhoto),
             points if points < FEWEST => return Err(NotComparable::TooFew { points }),
@@ -216,9 +227,9 @@ pub enum NotComparable {
     /// No vertex of the surface projects into the photo.
     #[error("no point of the surface projects into the photo")]
     NotInPhoto,
-    /// Too few vertices project into the photo.
+    /// Vertices project into too few of its pixels, as it is compared.
     #[error(
-        "only {points} points of the surface project into the photo, too few to compare colours"
+        "points of the surface project into only {points} places of the photo, too few to compare colours"
     )]
     TooFew {
         /// How many.
@@ -335,7 +346,7 @@ mod tests {
     #[test]
     fn a_right_pose_matches_and_a_flipped_one_is_recognised() {
         let (surface, camera, pose, image) = scene();
-        let right = Agreement::of(&surface, &camera, &pose, &image).unwrap();
+        let right = Agreement::of(&surface, &camera, &pose, &image, 1).unwrap();
         // Not all: rounding may exclude vertices on the photo's edge.
         assert!(right.points > 4000 && right.correlation > 0.99, "{right:?}");
         assert_eq!(right.mismatch(), None);
@@ -343,15 +354,69 @@ mod tests {
             rotation: pose.rotation * DMat3::from_rotation_z(std::f64::consts::PI),
             ..pose
         };
-        let wrong = Agreement::of(&surface, &camera, &turned, &image).unwrap();
+        let wrong = Agreement::of(&surface, &camera, &turned, &image, 1).unwrap();
         assert_eq!(wrong.flipped.1, Flip::HalfTurn);
         assert_eq!(wrong.mismatch(), Some(Mismatch::Flipped(Flip::HalfTurn)));
         let quarter = Pose {
             rotation: pose.rotation * DMat3::from_rotation_z(std::f64::consts::FRAC_PI_2),
             ..pose
         };
-        let quarter = Agreement::of(&surface, &camera, &quarter, &image).unwrap();
+        let quarter = Agreement::of(&surface, &camera, &quarter, &image, 1).unwrap();
         assert_eq!(quarter.mismatch(), Some(Mismatch::Different));
+    }
+
+    /// A second storey 0.2 m below in the negative of the first, of which every other vertex is there: the photo shows the first alone.
+    #[test]
+    fn what_is_hidden_is_left_out() {
+        let (surface, camera, pose, image) = scene();
+        let points: Vec<DVec3> = surface.vertices().collect();
+        // A surface has its vertices in an order of its own.
+        let corners = [[0.5, 63.5], [63.5, 63.5], [0.5, 0.5], [63.5, 0.5]];
+        let corners = corners.map(|at| {
+            let at = DVec2::from(at).extend(0.0) / 32.0;
+            points.iter().position(|point| *point == at).unwrap()
+        });
+        let mut cloud = Cloud::default();
+        for (storey, step) in [(0.0, 2), (-0.2, 1)] {
+            // Its corners come first, for its two triangles.
+            let first = u32::try_from(cloud.points.len()).unwrap();
+            let [a, b, c, d] = [0, 1, 2, 3].map(|corner| first + corner);
+            cloud.triangles.extend([[a, c, b], [b, c, d]]);
+            for place in corners.into_iter().chain((0..points.len()).step_by(step)) {
+                cloud.points.push(points[place] + DVec3::Z * storey);
+                let color = surface.colors()[place];
+                let negative = color.map(|channel| 255 - channel);
+                cloud
+                    .colors
+                    .push(if storey == 0.0 { color } else { negative });
+            }
+        }
+        let storeys = Surface::new(cloud).unwrap();
+        let right = Agreement::of(&storeys, &camera, &pose, &image, 1).unwrap();
+        assert!(right.points < 3000 && right.correlation > 0.99, "{right:?}");
+    }
+
+    /// Four vertices in each pixel, two of them bright and two dark about the pixel's own shade, are their mean.
+    #[test]
+    fn vertices_of_one_pixel_are_their_mean() {
+        let (surface, camera, pose, _) = scene();
+        let mut cloud = Cloud::default();
+        for (at, color) in surface.vertices().zip(surface.colors()) {
+            for (x, y, off) in [
+                (-1.0, -1.0, 30),
+                (1.0, -1.0, -30),
+                (-1.0, 1.0, -30),
+                (1.0, 1.0, 30),
+            ] {
+                cloud.points.push(at + DVec3::new(x, y, 0.0) / 150.0);
+                let shade = i32::from(color[0] / 2 + 60) + off;
+                cloud.colors.push([u8::try_from(shade).unwrap(); 3]);
+            }
+        }
+        let (_, _, _, image) = scene();
+        let found = Agreement::of(&Surface::new(cloud).unwrap(), &camera, &pose, &image, 1);
+        let found = found.unwrap();
+        assert!(found.points < 4100 && found.correlation > 0.99, "{found:?}");
     }
 
     #[test]
@@ -362,7 +427,7 @@ mod tests {
             ..pose
         };
         assert_eq!(
-            Agreement::of(&surface, &camera, &away, &image),
+            Agreement::of(&surface, &camera, &away, &image, 1),
             Err(NotComparable::NotInPhoto)
         );
         // 1.95 m to the side leaves the first of the 64 columns and a half of the second.
@@ -371,12 +436,12 @@ mod tests {
             ..pose
         };
         assert_eq!(
-            Agreement::of(&surface, &camera, &aside, &image),
+            Agreement::of(&surface, &camera, &aside, &image, 1),
             Err(NotComparable::TooFew { points: 128 })
         );
         let black = RgbImage::new(64, 64);
         assert_eq!(
-            Agreement::of(&surface, &camera, &pose, &black),
+            Agreement::of(&surface, &camera, &pose, &black, 1),
             Err(NotComparable::OneColour)
         );
         assert_eq!(
@@ -384,7 +449,8 @@ mod tests {
                 &surface,
                 &camera,
                 &pose,
-                for_comparing(&black, &camera).as_ref()
+                for_comparing(&black, &camera).as_ref(),
+                1
             ),
             Err(NotComparable::OtherSize)
         );
@@ -394,7 +460,7 @@ mod tests {
         };
         let plain = Surface::new(cloud).unwrap();
         assert_eq!(
-            Agreement::of(&plain, &camera, &pose, &image),
+            Agreement::of(&plain, &camera, &pose, &image, 1),
             Err(NotComparable::NoColours)
         );
     }

@@ -367,8 +367,10 @@ impl Surface {
     /// Whether so many rays are worth a mesh of the whole surface.
     fn pays_whole(&self, rays: usize) -> bool {
         match &self.whole.shape {
+            // It may be there already, for the viewport or for others' rays.
             Shape::Cloud(sites) => {
-                !sites.is_part() && sites.points().len() <= rays.saturating_mul(SITES_PER_RAY)
+                let is_few = || sites.points().len() <= rays.saturating_mul(SITES_PER_RAY);
+                !sites.is_part() && (self.whole.mesh.get().is_some() || is_few())
             }
             Shape::Mesh(_) => true,
         }

@@ -119,7 +119,8 @@ impl State {
             }
             state.outline_next();
         });
-        self.say_of_place(Severity::Note, &format!("{said}: outlining its fragments"));
+        let text = format!("{said}: outlining its fragments");
+        self.say_of_photo(Severity::Note, &text, Some(photo));
     }
 
     /// Takes the selected photo's outlines from a file of another tool, or a folder of them.
@@ -221,7 +222,7 @@ impl State {
             }
         }
         let text = format!("{}: {count} fragments outlined", open.name(photo));
-        self.say_of_place(Severity::Note, &text);
+        self.say_of_photo(Severity::Note, &text, Some(photo));
         self.measure_fragments();
     }
 }

@@ -240,16 +240,17 @@ impl State {
         self.log.push(line);
     }
 
-    /// The same of something that matters on this page for this photo alone.
-    pub(crate) fn say_of_place(&mut self, severity: Severity, text: &str) {
+    /// The same of something that matters for this photo alone, on this page.
+    pub(crate) fn say_of_photo(&mut self, severity: Severity, text: &str, photo: Option<usize>) {
         self.say(severity, text);
         let said = self.log.last().map(|line| line.text.clone());
-        self.said_there = said.map(|text| (text, self.place()));
+        self.said_there = said.map(|text| (text, (self.page, photo)));
     }
 
     /// Says that a file was not taken, until the next of its kind is, or another photo or page is looked at.
     pub(crate) fn refuse_import(&mut self, task: Task, text: &str) {
-        self.say_of_place(Severity::Error, text);
+        let (_, photo) = self.place();
+        self.say_of_photo(Severity::Error, text, photo);
         let said = self.said_there.clone();
         self.import_refused = said.map(|(text, place)| (task, text, place));
     }

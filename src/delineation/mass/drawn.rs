@@ -14,7 +14,7 @@ use crate::measures::Fragment;
 /// The chance of Poisson's law with the mean 1 that there is none.
 const NONE: f64 = 1.0 / std::f64::consts::E;
 
-/// More than that no draw holds of one: the chance is 1e-19.
+/// More than that no draw holds of one: the chance is 1e-20.
 const MOST: f64 = 20.0;
 
 /// A photo whose fragments can be drawn anew.

@@ -30,8 +30,8 @@ use crate::mass::{ByMass, PhotoFragments, Steps};
 /// is by the sieves with the usual one, 11 % too small with none, 3 % too large with 0.5.
 const OF_OTHERS: [f64; 2] = [0.07, 0.2];
 
-/// How many draws: of a thousand fragments the ends of an interval are known to a hundredth of its width; of a hundred to a
-/// thirtieth.
+/// How many draws: the ends of an interval are known to a fiftieth of its width by the draws alone, and the better the more of the width
+/// is of errors that are not drawn.
 const DRAWS: u32 = 1000;
 
 /// Photos from which on they are drawn, too.

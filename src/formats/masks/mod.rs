@@ -133,7 +133,7 @@ impl MaskFile {
         self.is_own
     }
 
-    /// Whether it is of one photo, whose name, where there is one, binds nobody: then the file's own name may tell which.
+    /// Whether it is of one photo: then the file's own name may tell which, where it names none.
     pub fn is_of_one(&self) -> bool {
         !matches!(self.contents, Contents::Many(_))
     }

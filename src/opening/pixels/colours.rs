@@ -60,7 +60,8 @@ impl Colours {
             return Self::Not("there is no such photo".to_owned());
         };
         let camera = flight.camera(posed);
-        match Agreement::of_photo(&parts.surface, camera, &posed.pose, small) {
+        let photos = parts.photos.len();
+        match Agreement::of_photo(&parts.surface, camera, &posed.pose, small, photos) {
             Ok(agreement) => Self::Compared(agreement),
             Err(why) => Self::Not(why.to_string()),
         }

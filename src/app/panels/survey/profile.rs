@@ -55,6 +55,8 @@ pub(super) fn profile(
     let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| {
         [low.min(z), high.max(z)]
     });
+    // A line beyond the surface has none.
+    let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
     let relief = (high - low).max(LEAST_RELIEF * profile.length);
     let room = [ui.available_width() - AXES[0], HEIGHT - AXES[1]];
     let times = times_as_high(relief, profile.length, room);

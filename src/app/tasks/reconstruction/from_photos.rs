@@ -7,6 +7,7 @@ use std::time::Duration;
 use crate::command::{Asking, Command};
 use crate::fault::Fault;
 use crate::files::FileError;
+use crate::formats::{FAILED, UNFINISHED};
 use crate::from_photos::{
     Ended, FolderField, FoundPhotos, FromNode, FromPhotosForm, FromPhotosStep, NodeForm,
 };
@@ -164,7 +165,7 @@ impl State {
         let node = form.node.clone();
         self.from_photos.ended = None;
         self.from_photos.node = None;
-        let (writing, opened) = (self.from_photos.writing.clone(), self.opened);
+        let (writing, run) = (self.from_photos.writing.clone(), self.run_into(&request.to));
         self.from_photos.growing = None;
         // The last line of the log stands in the bar: else "cancelled" would, of the run before.
         let (from, into) = (request.photos.display(), request.to.display());
@@ -200,21 +201,29 @@ impl State {
             let engine = engine.map_err(|fault| FileError::new(&request.photos, fault))?;
             reconstruct(&request, &*engine, progress)
         };
-        self.run_reconstruction(work, opened);
+        self.run_reconstruction(work, run);
     }
 
-    /// Reconstructs; `opened` tells whether another flight was opened since.
+    /// A run into that folder, from now on.
+    fn run_into(&self, to: &Path) -> Run {
+        Run {
+            to: to.to_owned(),
+            opened: self.opened,
+        }
+    }
+
+    /// Reconstructs.
     fn run_reconstruction(
         &mut self,
         work: impl FnOnce(&Progress) -> Result<Reconstructed, FileError> + Send + 'static,
-        opened: u64,
+        run: Run,
     ) {
         self.start(
             Task::RECONSTRUCT,
             work,
             move |state, made: Result<Reconstructed, FileError>| match made {
-                Ok(made) => state.take_reconstructed(made, opened),
-                Err(error) => state.take_failed(error.to_string(), may_go_on(&error.fault)),
+                Ok(made) => state.take_reconstructed(made, run.opened),
+                Err(error) => state.take_failed(error.to_string(), may_go_on(&run.to)),
             },
         );
     }
@@ -227,7 +236,7 @@ impl State {
         };
         let told = Arc::new(Mutex::new(FromNode::default()));
         self.from_photos.node = Some(told.clone());
-        let (writing, opened) = (self.from_photos.writing.clone(), self.opened);
+        let (writing, run) = (self.from_photos.writing.clone(), self.run_into(&request.to));
         let context = self.context.clone();
         let work = move |progress: &Progress| {
             let _writes = alone(&writing, &request.to, progress)?;
@@ -245,7 +254,7 @@ impl State {
             }
             made
         };
-        self.run_reconstruction(work, opened);
+        self.run_reconstruction(work, run);
     }
 
     /// Takes the model of the run as it is now, where it is looked at: with no other flight on the screen.
@@ -303,9 +312,18 @@ impl State {
     }
 }
 
-/// Whether the same run once more can come to an end: where the disk stopped it. Of the same photos nothing else comes than before.
-fn may_go_on(fault: &Fault) -> bool {
-    fault.remedy.contains("disk")
+/// A run that was started.
+struct Run {
+    /// Where its flight goes.
+    to: PathBuf,
+    /// Of how many flights that were opened it is: whether another one was since.
+    opened: u64,
+}
+
+/// Whether the same run once more goes on where it stopped: not where its photos could not be reconstructed, of which nothing else comes
+/// than before.
+fn may_go_on(folder: &Path) -> bool {
+    folder.join(UNFINISHED).is_file() && !folder.join(FAILED).is_file()
 }
 
 /// What is asked of a node.

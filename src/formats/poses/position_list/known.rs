@@ -6,6 +6,7 @@
 
 use std::path::Path;
 
+use super::table::SaysSo;
 use super::{
     ControlPoints, NamedPosition, PositionList, Shape, control_points_from_text, gcp_list,
     positions_from_text, table,
@@ -23,16 +24,17 @@ pub enum KnownPlaces {
     OfPhotos(PositionList),
 }
 
-/// Reads a list of known places, with what is wrong with one that says that it is one; `None` of what does not. What it is asked
-/// of may be anything: a film, a cloud.
+/// Reads a list of known places, with what is wrong with one that is certainly one; `None` of what says nothing like it. What it is
+/// asked of may be anything: a film, a cloud.
 pub fn read_known_places(path: &Path) -> Option<Result<KnownPlaces, Fault>> {
     const MOST: u64 = 16 << 20;
     let bytes = read_small(path, MOST, "list of places", "").ok()?;
     let text = text_from_bytes(&bytes).ok()?;
     let shape = Shape::of(text).ok()?;
-    if matches!(shape, Shape::Table) && !table::is_of_names(text) {
-        return None;
-    }
+    let is_certain = match shape {
+        Shape::Table => matches!(table::says_so(text)?, SaysSo::ByItsHeader),
+        Shape::Mrk | Shape::Crs(_) | Shape::Marks => true,
+    };
     let points = control_points_from_text(text);
     if let Ok(list) = points.as_ref()
         && !are_of_photos(list)
@@ -55,6 +57,7 @@ pub fn read_known_places(path: &Path) -> Option<Result<KnownPlaces, Fault>> {
         true => points.err(),
         false => positions.err(),
     }
+    .filter(|_| is_certain)
     .map(Err)
 }
 

@@ -78,27 +78,33 @@ pub(super) fn read(text: &str) -> Result<PositionList, Fault> {
     Ok(list)
 }
 
-/// Whether a table is one of named places and of nothing else: its header names a column of photos or control points, or names
-/// stand there. Numbers in a column "id" may be a cloud's.
-pub(super) fn is_of_names(text: &str) -> bool {
+/// How a table says that it is one of named places.
+pub(super) enum SaysSo {
+    /// Its header calls the column of names one of photos or control points.
+    ByItsHeader,
+    /// Names stand in that column: those of classes may be a cloud's.
+    ByItsNames,
+}
+
+/// Whether a table is one of named places. Numbers in a column "id" may be a cloud's.
+pub(super) fn says_so(text: &str) -> Option<SaysSo> {
     let mut lines = text.lines().filter(|line| !line.trim().is_empty());
     let header = lines.find_map(|line| {
         let comment = line.trim_start().strip_prefix('#');
         let layout = Layout::of(comment.unwrap_or(line));
         (layout.is_some() || comment.is_none()).then_some(layout)
     });
-    let Some(layout) = header.flatten() else {
-        return false;
-    };
+    let layout = header.flatten()?;
     if layout.says_whose {
-        return true;
+        return Some(SaysSo::ByItsHeader);
     }
     // The first few tell.
     let mut names = lines.take(20).filter_map(|line| {
         let fields = layout.separator.split(line);
         fields.into_iter().nth(layout.place(Column::Name)?)
     });
-    names.any(|name| !name.is_empty() && name.parse::<f64>().is_err())
+    let is_named = names.any(|name| !name.is_empty() && name.parse::<f64>().is_err());
+    is_named.then_some(SaysSo::ByItsNames)
 }
 
 fn no_header(line: u64, text: &str) -> Fault {
@@ -230,11 +236,14 @@ impl Layout {
             says_whose: false,
         };
         let fields = separator.split(header);
-        let whose = ["photo", "image", "gcp"];
-        let mut names = fields.iter().map(|field| squeezed(field));
-        layout.says_whose = names.any(|name| whose.iter().any(|word| name.starts_with(word)));
         layout.columns = fields.iter().map(|field| Column::of(field)).collect();
         layout.units = fields.iter().map(|field| unit_in_brackets(field)).collect();
+        let name = layout
+            .place(Column::Name)
+            .map(|place| squeezed(&fields[place]));
+        let whose = ["photo", "image", "gcp"];
+        layout.says_whose =
+            name.is_some_and(|name| whose.iter().any(|word| name.starts_with(word)));
         let has = |column| layout.place(column).is_some();
         let in_degrees = has(Column::Longitude) && has(Column::Latitude);
         if !has(Column::Name) || !(in_degrees || has(Column::X) && has(Column::Y)) {
