@@ -27,12 +27,12 @@ const SQUARE: f64 = 0.001;
 /// No matcher tells where a photo sees a point better, pixels.
 const LEAST_PX: f64 = 0.02;
 
-/// From where on a pixel off counts less and less in the last adjustment, in halfway values of how far points lie off. Most lie
-/// close and a tenth far (stones that look otherwise from elsewhere), so that a deviation of all says little: half of it is of that
-/// tenth. (Of bench 7202's 105 photos, against the truth: axes 0.026 degrees off and centres 13.3 mm where all to a pixel count
-/// alike, 0.022 and 11.1 so; 0.9 in its place comes out the same.)
-/// The information of its points in that loss, the sum of the squared influence over the sum of its slope, is that of a deviation of
-/// 0.87 halfway values there: priors are weighed against one.
+/// From where on a point counts less and less in the last adjustment, in halfway values of how far points lie off. Half of them lie
+/// close and a tenth far (stones that look otherwise from elsewhere), and weighed alike that tenth has three fifths of the say. (Of
+/// bench 7202's 105 photos, against the truth: axes 0.026 degrees off and centres 13.3 mm where all to a pixel count alike, 0.022
+/// and 11.1 so; in a model of the adjustment 0.9 in its place comes out the same.)
+/// Priors are weighed against a halfway value: the information of points in that loss, the sum of their squared influences over the
+/// sum of the slopes, is that of a deviation of 0.87 of it there.
 const FAR: f64 = 1.5;
 
 /// The root of the mean square in halfway values from which points err otherwise than by a normal law, of which it is 1.2 (simulated
