@@ -20,9 +20,19 @@ pub(crate) fn clicked_places(ui: &egui::Ui, response: &egui::Response) -> Vec<Po
         response.interact_rect.contains(place) && layer == Some(response.layer_id)
     };
     clicks.retain(|place| is_its(*place));
-    // The second of a double click, and a hand that trembles, put nothing twice.
-    clicks.dedup_by(|next, before| next.distance(*before) <= reach);
     clicks
+}
+
+/// The first ones of places that lie within `reach` of each other: for what a click sets where the next one would find it, and does not
+/// before the next frame.
+pub(crate) fn apart(places: Vec<Pos2>, reach: f32) -> Vec<Pos2> {
+    let mut kept: Vec<Pos2> = Vec::new();
+    for place in places {
+        if kept.iter().all(|before| before.distance(place) > reach) {
+            kept.push(place);
+        }
+    }
+    kept
 }
 
 /// The places of all clicks among these events. `ends_drag`: what is let go first was dragged before.
@@ -87,6 +97,10 @@ mod tests {
         let gone = [Event::PointerMoved(c)];
         let two = [&click(a)[..], &click(b), &gone].concat();
         assert_eq!(found(&two), [a, b]);
+        // A double click is two: the first of them is a corner, and the second one ends the line.
+        let double = [&click(a)[..], &click(a), &click(b)].concat();
+        assert_eq!(found(&double), [a, a, b]);
+        assert_eq!(apart(found(&double), 6.0), [a, b]);
         // A drag is none, though it ends where it began.
         let dragged = [
             button(a, true),

@@ -17,10 +17,10 @@ const LARGE: f64 = 0.1;
 pub(crate) fn bare(labels: &LabelImage) -> Option<String> {
     let said = if largest_bare(labels) > LARGE {
         "one piece of more than a tenth of the photo is without any fragment, and counts as fines; where it is floor and not fines, \
-         exclude it on the window's page Fragments"
+         exclude it (window, page Fragments, tool Exclude)"
     } else if largest_square(labels) > largest_across(labels) {
         "one piece without any fragment is larger than the largest fragment, and counts as fines; where it is a ball, floor or \
-         another thing, exclude it on the window's page Fragments"
+         another thing, exclude it (window, page Fragments, tool Exclude)"
     } else {
         return None;
     };

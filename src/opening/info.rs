@@ -35,19 +35,12 @@ pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
     let kind = match detect(path) {
         Ok(kind) => kind,
         // DJI's list of places has no name that tells.
-        Err(error) => {
-            return match read_known_places(path) {
-                Some(Ok(places)) => Ok(places_info(&places)),
-                Some(Err(fault)) => Err(FileError::new(path, fault)),
-                None => Err(error),
-            };
-        }
+        Err(error) => return known_places_info(path).unwrap_or(Err(error)),
     };
     Ok(match kind {
-        Kind::Cloud(CloudFormat::Xyz) => match read_known_places(path) {
+        Kind::Cloud(CloudFormat::Xyz) => match known_places_info(path) {
             // Which have columns like a cloud's.
-            Some(Ok(places)) => places_info(&places),
-            Some(Err(fault)) => return Err(FileError::new(path, fault)),
+            Some(places) => places?,
             None => cloud_info(&read_cloud(path, progress)?),
         },
         Kind::Cloud(_) => cloud_info(&read_cloud(path, progress)?),
@@ -83,6 +76,13 @@ pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
             flight_info(&opened.flight, &opened.warnings)
         }
     })
+}
+
+/// A list of known places, or what is wrong with it; `None` of what is none.
+fn known_places_info(path: &Path) -> Option<Result<Value, FileError>> {
+    let places = read_known_places(path)?;
+    let places = places.map_err(|fault| FileError::new(path, fault));
+    Some(places.map(|places| places_info(&places)))
 }
 
 /// A cloud or mesh.

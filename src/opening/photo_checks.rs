@@ -485,6 +485,20 @@ mod tests {
             Flight::new(parts).unwrap()
         };
         assert_eq!(check(&on_pile, ["FC1"; 2], 50.0, 40.0), [""; 0]);
+        // Below 10 m a barometer's metre is not said, 2.5 are.
+        let low = |z: f64| {
+            let mut parts = good.parts().clone();
+            for photo in &mut parts.photos {
+                photo.pose.center.z = z;
+            }
+            Flight::new(parts).unwrap()
+        };
+        assert_eq!(check(&low(5.5), ["FC1"; 2], 4.0, 5.5), [""; 0]);
+        let said = check(&low(6.5), ["FC1"; 2], 4.0, 6.5);
+        assert!(
+            said.len() == 1 && said[0].contains("4.0 m above the take-off"),
+            "{said:?}"
+        );
         // Files that are not there are not spoken of here.
         assert_eq!(
             photo_checks(&good, &[PhotoFile::default(), PhotoFile::default()]).0,

@@ -52,8 +52,6 @@ struct Thumbnail {
     small: Option<egui::ColorImage>,
     /// For the viewport.
     image: Option<PhotoImage>,
-    /// How its colours compare with the surface's.
-    colours: Colours,
     /// When it was taken, by EXIF.
     time: Option<String>,
 }
@@ -97,9 +95,6 @@ impl State {
                 let time = metadata.and_then(|metadata| metadata.time);
                 let read = read_photo(path);
                 let large = read.as_ref().ok();
-                let is_compared = has_colours || together.wants(index);
-                let small = large.filter(|_| is_compared);
-                let small = small.and_then(|large| picture::for_comparing(large, camera));
                 let thumbnail = Thumbnail {
                     flight: number,
                     photo: index,
@@ -108,19 +103,27 @@ impl State {
                     image: large.map(|large| {
                         PhotoImage::new(&undistorted(large, camera, THUMBNAIL).convert())
                     }),
-                    colours: match &read {
-                        Ok(_) => Colours::of_photo(&flight, index, small.as_ref()),
-                        Err(why) => Colours::Unreadable(why.clone()),
-                    },
                     time,
                 };
-                together.take_colours(index, &(&thumbnail.colours).into());
                 // Waits until the window has taken some; a cancelled job gives up.
                 if !steps.offer(|state: &mut Self| state.take_thumbnail(thumbnail), progress) {
                     return Vec::new();
                 }
                 context.request_repaint();
                 // What takes longer comes behind what is seen.
+                let is_compared = has_colours || together.wants(index);
+                let small = read.as_ref().ok().filter(|_| is_compared);
+                let small = small.and_then(|large| picture::for_comparing(large, camera));
+                let colours = match read {
+                    Ok(_) => Colours::of_photo(&flight, index, small.as_ref()),
+                    Err(why) => Colours::Unreadable(why),
+                };
+                together.take_colours(index, &(&colours).into());
+                let tell = move |state: &mut Self| state.take_colours(number, index, &colours);
+                if !steps.offer(tell, progress) {
+                    return Vec::new();
+                }
+                context.request_repaint();
                 match &small {
                     Some(small) => together.take(&flight, index, small, progress),
                     None => together.give_up(index),
@@ -226,7 +229,6 @@ impl State {
             photo,
             small,
             image,
-            colours,
             time,
         } = thumbnail;
         let Some(open) = &mut self.open else {
@@ -244,12 +246,19 @@ impl State {
         }
         open.pictures.images[photo] = image.map(Arc::new);
         open.take_time(photo, time);
+    }
+
+    /// Takes how the colours of a photo of that flight compare with the surface's.
+    fn take_colours(&mut self, flight: u64, photo: usize, colours: &Colours) {
+        let Some(open) = self.open.as_mut().filter(|open| open.number == flight) else {
+            return;
+        };
         let evidence = open.review.looked_up().evidence.get(photo);
         let is_known =
             evidence.is_some_and(|evidence| evidence.colours != ColoursFound::NotCompared);
         let doubt = colours.doubt().filter(|_| !is_known);
         let said = doubt.map(|doubt| format!("photo '{}': {doubt}", open.name(photo)));
-        open.take_colours(photo, &colours);
+        open.take_colours(photo, colours);
         if let Some(said) = said {
             self.say(Severity::Warning, &said);
         }

@@ -154,7 +154,7 @@ impl PhotoFragments {
             && largest.sieve_size > ALONE * next.sieve_size;
         is_ball.then(|| {
             "its largest fragment is a circle, much larger than the next, and counts as rock; if it is a ball, trace it as a scale \
-             object, or exclude it on the window's page Fragments"
+             object, or exclude it (window, page Fragments, tool Exclude)"
                 .to_owned()
         })
     }

@@ -93,14 +93,9 @@ pub(super) fn of_all_photos(
     say(&all.notes, ui);
 }
 
-/// How the command says where something is excluded, and how this page does.
-const BY_COMMAND: &str = "on the window's page Fragments";
-const HERE: &str = "with the tool Exclude";
-
 /// What is to be said of fragments.
 pub(super) fn say(notes: &[String], ui: &mut Ui) {
     for note in notes {
-        let note = note.replace(BY_COMMAND, HERE);
         let note = egui::RichText::new(note).color(ui.visuals().warn_fg_color);
         ui.add(egui::Label::new(note).wrap());
     }

@@ -5,7 +5,7 @@ use egui::{Color32, Pos2, Rect, Stroke, Vec2, vec2};
 use glam::DVec2;
 
 use crate::camera::Camera;
-use crate::clicks::clicked_places;
+use crate::clicks::{apart, clicked_places};
 use crate::command::Command;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::tracing::{Trace, Tracing, rounded};
@@ -158,13 +158,7 @@ pub(in crate::panels) fn mouse(
     let Some(tracing) = &open.objects.tracing else {
         return dragged.is_some();
     };
-    let clicks = clicked_places(ui, response);
-    for (count, &at) in clicks.iter().enumerate() {
-        // Of one frame the second one at a place is on the point that the first one sets.
-        let is_near = |before: &Pos2| before.distance(at) <= REACH;
-        if clicks[..count].iter().any(is_near) {
-            continue;
-        }
+    for at in apart(clicked_places(ui, response), REACH) {
         // Beside the photo there is nothing to mark.
         let pixel = place
             .shot_under(at)

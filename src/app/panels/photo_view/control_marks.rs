@@ -4,7 +4,7 @@ use egui::{Color32, Pos2, Stroke, Vec2, vec2};
 use glam::DVec2;
 
 use super::PhotoPlace;
-use crate::clicks::clicked_places;
+use crate::clicks::{apart, clicked_places};
 use crate::command::Command;
 use crate::control_points::ControlStep;
 use crate::open_flight::OpenFlight;
@@ -84,7 +84,7 @@ pub(super) fn mouse(
     if response.hovered() && open.control.chosen.is_some() {
         ui.set_cursor_icon(egui::CursorIcon::Crosshair);
     }
-    for at in clicked_places(ui, response) {
+    for at in apart(clicked_places(ui, response), REACH) {
         match (mark_at(at), open.control.chosen) {
             (Some(mark), chosen) if Some(mark.point) != chosen => {
                 send(ControlStep::Choose(Some(mark.point)));
