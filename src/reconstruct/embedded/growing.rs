@@ -10,6 +10,7 @@ use cumulus3d_sfm::registration::{
 use cumulus3d_sfm::triangulator::{TrackTriangulator, TrackTriangulatorOptions};
 
 use super::growth::Watch;
+use super::guided::{RADIUS_PX, seen_again};
 use super::seed::{Seed, seeds};
 use crate::adjusted::{
     Adjustment, FEWEST_PHOTOS, Weighed, Whose, adjust, failed, too_little_in_common,
@@ -26,6 +27,8 @@ const TRIES: usize = 3;
 const GROWN: f64 = 0.2;
 /// Photos around a new one that are adjusted with it.
 const AROUND: usize = 6;
+/// Points are looked for in more photos so often: what the first time finds is where more is found, a tenth as much.
+const GUIDED: u64 = 2;
 
 /// The model; it is shown to `watch` while it grows.
 ///
@@ -131,6 +134,17 @@ impl Growing<'_> {
                 .map_err(|_| error())?;
             self.adjust(&mut model, HashSet::new(), 50)?;
         }
+        self.progress.stage("looking for points in more photos");
+        for round in 0..GUIDED {
+            let done = [round, GUIDED];
+            let again = seen_again(&model, self.store, self.progress, done)?;
+            let mut triangulator = TrackTriangulator::new(&model, &again, guided_tracks());
+            let longer = triangulator.complete_tracks(&mut model, None);
+            longer.map_err(|_| error())?;
+            let merged = triangulator.merge_tracks(&mut model, None);
+            merged.map_err(|_| error())?;
+            self.adjust(&mut model, HashSet::new(), 50)?;
+        }
         model.remove_unregistered();
         Ok(model)
     }
@@ -191,6 +205,15 @@ impl Growing<'_> {
         shared.sort_by(|a, b| b.cmp(a));
         let nearest = shared.into_iter().take(AROUND).map(|(_, other)| other);
         nearest.chain([image]).collect()
+    }
+}
+
+/// Of what was looked for within so many pixels.
+fn guided_tracks() -> TrackTriangulatorOptions {
+    TrackTriangulatorOptions {
+        merge_max_reproj_error: RADIUS_PX,
+        complete_max_reproj_error: RADIUS_PX,
+        ..tracks()
     }
 }
 

@@ -9,6 +9,7 @@
 //! matching      pairs of photos: matches that one geometry explains
 //! seed          the pair that a model begins with
 //! growing       photo after photo joins the model
+//! guided        its points looked for in more photos
 //! growth        what is shown of it meanwhile
 //! ```
 //!
@@ -21,6 +22,7 @@
 mod features;
 mod growing;
 mod growth;
+mod guided;
 mod matching;
 mod nearest_two;
 #[cfg(feature = "gpu")]
