@@ -153,6 +153,10 @@ impl<'a> ScaleReport<'a> {
 
     /// What to do where half of the photos or more look beyond the surface; `None` elsewhere.
     pub fn advice(&self) -> Option<String> {
+        // Where none shows it, it lies elsewhere, and no larger cloud helps.
+        if !self.lines().any(|line| line.photo.sees_surface()) {
+            return None;
+        }
         let beyond = |doubt: &Doubt| {
             matches!(
                 doubt,

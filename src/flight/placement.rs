@@ -1,7 +1,9 @@
 //! Whether the photos stand where photos of this surface can stand. Poses and surface often come
 //! from two exports: in two coordinate systems, or upside down, they still give numbers.
 
-use glam::{DVec2, DVec3};
+mod other_unit;
+
+use glam::DVec3;
 
 use super::{Doubt, Flight, FlightParts, Photo};
 use crate::fault::first_names;
@@ -13,8 +15,12 @@ use crate::units::{LengthUnit, in_words};
 /// so many times the surface's extent: a lens that still resolves the rock does not see so little.
 const FAR: f64 = 100.0;
 
-/// Along each side of a photo so many of its pixels are looked at, to see from which side it shows a mesh.
+/// Along each side of a photo so many of its pixels are looked at, to see whether it shows the surface, and from which side.
 const LOOKS: u32 = 5;
+
+/// Lengths that are so many times too large or too small are those of another unit; of less (feet for metres) another datum, or an
+/// origin elsewhere, may be as likely.
+const SURE_OF_UNIT: f64 = 10.0;
 
 /// Of fewer of them that meet the mesh nothing is said.
 const LEAST_LOOKS: usize = 5;
@@ -33,6 +39,10 @@ pub struct Placement {
     pub behind: Vec<usize>,
     /// The surface's extent, world units.
     pub extent: f64,
+    /// The units that poses and surface are likely in, where no photo sees the surface as it stands.
+    pub other_unit: Option<[LengthUnit; 2]>,
+    /// How many photos there are.
+    pub photos: usize,
 }
 
 impl Flight {
@@ -42,6 +52,7 @@ impl Flight {
         let bounds = parts.surface.bounds();
         let mut placement = Placement {
             extent: bounds.size().length(),
+            photos: parts.photos.len(),
             ..Placement::default()
         };
         let away = |center: DVec3| (center - center.clamp(bounds.min, bounds.max)).length();
@@ -71,21 +82,15 @@ impl Flight {
                 placement.behind.push(index);
             }
         }
+        placement.other_unit = caster.as_mut().and_then(|caster| self.other_unit(caster));
         placement
     }
 
     /// Whether what a photo shows of a mesh shows its back.
     fn sees_from_behind(&self, photo: &Photo, caster: &mut Caster<'_>) -> bool {
-        let (camera, image) = (self.camera(photo), self.parts().image);
-        let along =
-            |size: u32, place: u32| (f64::from(place) + 0.5) / f64::from(LOOKS) * f64::from(size);
-        let places = (0..LOOKS).flat_map(|row| (0..LOOKS).map(move |column| (column, row)));
-        let hits = places.filter_map(|(column, row)| {
-            let pixel = DVec2::new(along(camera.width, column), along(camera.height, row));
-            let direction = photo.pose.rotation * image.direction(camera, pixel).ok()?;
-            let origin = photo.pose.center;
-            caster.cast(&Ray { origin, direction })
-        });
+        let origin = photo.pose.center;
+        let directions = self.looks(photo);
+        let hits = directions.filter_map(|direction| caster.cast(&Ray { origin, direction }));
         let hits: Vec<bool> = hits.map(|hit| hit.is_from_behind).collect();
         let behind = hits
             .iter()
@@ -99,6 +104,7 @@ impl Placement {
     /// What it says against each photo of its flight.
     pub fn doubts(&self, unit: Option<LengthUnit>) -> impl Iterator<Item = (usize, Doubt)> {
         let extent = self.extent;
+        let unit_explains_all = self.unit_explains_all();
         let far = self.far.iter().map(move |&(photo, distance)| {
             let doubt = Doubt::FarFromSurface {
                 distance,
@@ -109,12 +115,38 @@ impl Placement {
         });
         let under = self.under.iter();
         let behind = self.behind.iter();
-        far.chain(under.map(|&photo| (photo, Doubt::UnderSurface)))
+        let of_places = far
+            .chain(under.map(|&photo| (photo, Doubt::UnderSurface)))
             .chain(behind.map(|&photo| (photo, Doubt::FromBehind)))
+            .filter(move |_| !unit_explains_all);
+        let of_unit = self.doubt_of_unit().into_iter();
+        let of_unit = of_unit.flat_map(move |doubt| {
+            let photos = 0..self.photos;
+            photos.map(move |photo| (photo, doubt.clone()))
+        });
+        of_places.chain(of_unit)
+    }
+
+    /// That poses and surface are in two units.
+    fn doubt_of_unit(&self) -> Option<Doubt> {
+        let [poses, surface] = self.other_unit?;
+        Some(Doubt::OtherUnit { poses, surface })
+    }
+
+    /// Whether the units are so far apart that they alone are why the photos stand where none can: then nothing else is said.
+    fn unit_explains_all(&self) -> bool {
+        self.other_unit.is_some_and(|[poses, surface]| {
+            let factor = poses.in_units_of(surface);
+            factor.max(1.0 / factor) > SURE_OF_UNIT
+        })
     }
 
     /// The same of the whole flight, one sentence each, with numbers.
     pub fn warnings(&self, flight: &Flight) -> Vec<String> {
+        let of_unit = self.doubt_of_unit().map(|doubt| doubt.to_string());
+        if self.unit_explains_all() {
+            return of_unit.into_iter().collect();
+        }
         let FlightParts { photos, .. } = flight.parts();
         let unit = in_words(flight.parts().unit_known.then_some(flight.parts().unit));
         let name = |photo: &usize| photos.get(*photo).map_or("", |photo| photo.name.as_str());
@@ -142,6 +174,7 @@ impl Placement {
                 ));
             }
         }
+        warnings.extend(of_unit);
         warnings
     }
 }
@@ -160,8 +193,15 @@ mod tests {
 
     /// Warnings of photos at these places over a square of 10 m at z = 0.
     fn warnings(centers: &[DVec3]) -> Vec<String> {
+        let flight = flight(centers, 0.0, 1.0);
+        flight.placement().warnings(&flight)
+    }
+
+    /// Photos at these places over a square of 10 m at this height, which is `factor` times as large and as high.
+    fn flight(centers: &[DVec3], height: f64, factor: f64) -> Flight {
         let corners = [(0.0, 0.0), (10.0, 0.0), (0.0, 10.0), (10.0, 10.0)];
-        let points = corners.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
+        let points = corners.map(|(x, y)| DVec3::new(x, y, height) * factor);
+        let points = points.to_vec();
         let cloud = Cloud {
             points,
             ..Cloud::default()
@@ -199,8 +239,7 @@ mod tests {
             as_read: Default::default(),
             photos: centers.iter().enumerate().map(photo).collect(),
         });
-        let flight = flight.unwrap();
-        flight.placement().warnings(&flight)
+        flight.unwrap()
     }
 
     #[test]
@@ -238,5 +277,85 @@ mod tests {
         let said = warnings(&centers.map(DVec3::from));
         let expected = "5 of 5 photos (0.jpg, 1.jpg, 2.jpg, 3.jpg, 4.jpg) were taken over 5024927 m from the surface, which is 14 m wide";
         assert!(said[0].starts_with(expected), "{said:?}");
+    }
+
+    /// Four photos 2 m above a square of 10 m, of a footprint of 2 m.
+    #[test]
+    fn two_units_are_asked_about() {
+        let centers = [(2.0, 2.0), (8.0, 2.0), (2.0, 8.0), (8.0, 8.0)];
+        let centers = centers.map(|(x, y)| DVec3::new(x, y, 3.0));
+        let said = |poses: f64, surface: f64| {
+            let flight = flight(&centers.map(|center| center * poses), 1.0, surface);
+            let placement = flight.placement();
+            let doubts: Vec<_> = placement.doubts(Some(LengthUnit::Metre)).collect();
+            let warnings = placement.warnings(&flight);
+            // What is asked of all of them is said in one sentence.
+            if let Some(of_unit) = warnings.iter().find(|said| said.starts_with("no photo")) {
+                assert_eq!(doubts.len(), centers.len() * warnings.len());
+                let asked = doubts
+                    .iter()
+                    .filter(|(_, doubt)| doubt.to_string() == *of_unit);
+                let asked: Vec<usize> = asked.map(|(photo, _)| *photo).collect();
+                assert_eq!(asked, [0, 1, 2, 3]);
+            }
+            warnings
+        };
+        assert_eq!(said(1.0, 1.0), [] as [&str; 0]);
+        for (poses, surface, start) in [
+            (
+                1000.0,
+                1.0,
+                "no photo sees the surface, which is about 1000 times too small for the poses: \
+                 are the poses in millimetres and the surface in metres?",
+            ),
+            (
+                1.0,
+                1000.0,
+                "no photo sees the surface, which is about 1000 times too large for the poses: \
+                 are the poses in metres and the surface in millimetres?",
+            ),
+            (
+                1.0 / 0.0254,
+                1.0,
+                "no photo sees the surface, which is about 39 times too small for the poses: \
+                 are the poses in inches and the surface in metres?",
+            ),
+        ] {
+            let said = said(poses, surface);
+            assert!(said.len() == 1 && said[0].starts_with(start), "{said:?}");
+        }
+        // Feet for metres is little: what else may be the matter is said, too.
+        let feet = said(1.0, 1.0 / 0.3048);
+        assert!(feet.len() == 2, "{feet:?}");
+        assert!(
+            feet[0].starts_with("4 of 4 photos (")
+                && feet[0].contains("were taken from under the surface"),
+            "{feet:?}"
+        );
+        assert!(
+            feet[1].contains("are the poses in metres and the surface in feet?"),
+            "{feet:?}"
+        );
+        // What is no unit is said in other words.
+        let said = said(50_000.0, 1.0);
+        assert!(said[0].contains("two coordinate systems"), "{said:?}");
+    }
+
+    /// Of four photos 2 m above a square of 10 m, in the photos' unit, the first looks at its middle from near the origin, however large
+    /// their unit is: what is then a 25th of the photo or more is a small pile, which no look meets.
+    #[test]
+    fn a_small_pile_is_in_no_other_unit() {
+        let centers = [(0.3, 0.3), (8.0, 2.0), (2.0, 8.0), (8.0, 8.0)];
+        let said = |poses: f64| {
+            let centers = centers.map(|(x, y)| DVec3::new(x, y, 3.0) * poses);
+            let flight = flight(&centers, 1.0, 1.0);
+            flight.placement().warnings(&flight)
+        };
+        assert_eq!(said(1.0 / 0.0254), [] as [&str; 0]);
+        let millimetres = said(1000.0);
+        assert!(
+            millimetres.len() == 1 && millimetres[0].contains("are the poses in millimetres"),
+            "{millimetres:?}"
+        );
     }
 }

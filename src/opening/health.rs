@@ -50,9 +50,10 @@ impl HealthItem {
     /// What a reason for doubt speaks against; `None` where it is of one photo's view, and the flight is well.
     pub fn doubted_by(doubt: &Doubt) -> Option<Self> {
         match doubt {
-            Doubt::UnitUnknown | Doubt::UnitNotSystems { .. } | Doubt::StrangeSize { .. } => {
-                Some(Self::Unit)
-            }
+            Doubt::UnitUnknown
+            | Doubt::UnitNotSystems { .. }
+            | Doubt::StrangeSize { .. }
+            | Doubt::OtherUnit { .. } => Some(Self::Unit),
             Doubt::FarFromSurface { .. } | Doubt::OtherHeights { .. } => {
                 Some(Self::CoordinateSystem)
             }
@@ -146,6 +147,7 @@ impl Remedy {
             | Doubt::SameFile { .. }
             | Doubt::FileUnreadable(_) => Some(Self::AddPhotos),
             Doubt::FarFromSurface { .. }
+            | Doubt::OtherUnit { .. }
             | Doubt::OffSurface(_)
             | Doubt::NoPoint(_)
             | Doubt::NoisyPoints { .. }

@@ -4,7 +4,7 @@
 use super::Doubt;
 
 /// All words.
-const KINDS: [&str; 49] = [
+const KINDS: [&str; 50] = [
     "no-scale",
     "off-surface",
     "no-point",
@@ -38,6 +38,7 @@ const KINDS: [&str; 49] = [
     "other-heights",
     "smaller-photos",
     "far-from-surface",
+    "other-unit",
     "under-surface",
     "from-behind",
     "turned-mesh",
@@ -105,6 +106,7 @@ impl Doubt {
             Self::OtherHeights { .. } => "other-heights",
             Self::SmallerPhotos { .. } => "smaller-photos",
             Self::FarFromSurface { .. } => "far-from-surface",
+            Self::OtherUnit { .. } => "other-unit",
             Self::UnderSurface => "under-surface",
             Self::FromBehind => "from-behind",
             Self::TurnedMesh => "turned-mesh",

@@ -216,6 +216,13 @@ pub enum Doubt {
         /// Of both.
         unit: Option<LengthUnit>,
     },
+    /// No photo sees the surface as they stand, and all do where the poses count in another unit than it.
+    OtherUnit {
+        /// Of the poses, likely.
+        poses: LengthUnit,
+        /// Of the surface, likely.
+        surface: LengthUnit,
+    },
     /// The camera stands under the surface.
     UnderSurface,
     /// It sees the faces of a mesh from behind.
@@ -344,6 +351,7 @@ impl Doubt {
         let is_of_its_place = matches!(
             self,
             Self::FarFromSurface { .. }
+                | Self::OtherUnit { .. }
                 | Self::UnderSurface
                 | Self::FromBehind
                 | Self::TurnedMesh

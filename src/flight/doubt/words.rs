@@ -5,7 +5,19 @@ use std::fmt;
 use super::Doubt;
 use crate::numbers::{apart, significant_digits, to_digits};
 use crate::scale::{CornerName, LEAST_COVERED};
-use crate::units::in_words;
+use crate::units::{LengthUnit, in_words};
+
+/// A unit of many.
+fn many(unit: LengthUnit) -> &'static str {
+    match unit {
+        LengthUnit::Millimetre => "millimetres",
+        LengthUnit::Centimetre => "centimetres",
+        LengthUnit::Metre => "metres",
+        LengthUnit::Inch => "inches",
+        LengthUnit::Foot => "feet",
+        LengthUnit::UsSurveyFoot => "US survey feet",
+    }
+}
 
 /// How much more `is` than `stated`, in percent.
 fn percent_off(is: f64, stated: f64) -> f64 {
@@ -264,6 +276,22 @@ impl fmt::Display for Doubt {
                 write!(
                     f,
                     "taken {distance:.0} {unit} from the surface, which is {extent:.0} {unit} wide: the poses and the surface are in two coordinate systems"
+                )
+            }
+            Self::OtherUnit { poses, surface } => {
+                let factor = poses.in_units_of(*surface);
+                let (factor, off) = match factor > 1.0 {
+                    true => (factor, "large"),
+                    false => (factor.recip(), "small"),
+                };
+                // Feet are 3.28 to a metre.
+                let decimals = if factor < 10.0 { 2 } else { 0 };
+                write!(
+                    f,
+                    "no photo sees the surface, which is about {factor:.decimals$} times too {off} for the poses: are the poses in {} and the \
+                     surface in {}? If not, check the coordinate systems, which axis is up and the heights' datum",
+                    many(*poses),
+                    many(*surface)
                 )
             }
             Self::UnderSurface => f.write_str(

@@ -5,8 +5,8 @@ use crate::flight::{
     Decision, DecisionKind, Doubt, Outcome, Photo, PhotoFileState, TogetherFound, Verdict,
 };
 use crate::scale::{
-    EdgeScales, FieldFacts, FittedScale, PhotoScale, ScaleEstimate, ScalePair, Uncertainty,
-    ViewFacts,
+    CornerOutcome, EdgeScales, FieldFacts, FittedScale, PhotoScale, ScaleEstimate, ScalePair,
+    Uncertainty, ViewFacts,
 };
 use crate::units::LengthUnit;
 
@@ -71,6 +71,23 @@ impl<'a> PhotoReview<'a> {
     /// The same where the numbers mean something: the unit is known.
     pub fn scale_to_type(&self) -> Option<&'a PhotoScale> {
         self.scale().filter(|_| self.unit_known)
+    }
+
+    /// Whether it shows the surface, as far as anybody has looked: at a corner, or between them. What stands where no photo of this
+    /// surface can shows none of it.
+    pub fn sees_surface(&self) -> bool {
+        let is_elsewhere = |doubt: &Doubt| {
+            matches!(
+                doubt,
+                Doubt::FarFromSurface { .. } | Doubt::OtherUnit { .. }
+            )
+        };
+        if self.doubts.iter().any(is_elsewhere) {
+            return false;
+        }
+        let mut corners = self.scale().into_iter().flat_map(|scale| &scale.corners);
+        corners.any(|corner| matches!(corner.outcome, CornerOutcome::OnSurface { .. }))
+            || self.field.is_some_and(|field| field.covered > 0.0)
     }
 
     /// Pixels per `unit` along its edges; see [`Self::scale_to_type`] for whether they mean it.

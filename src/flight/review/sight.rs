@@ -91,7 +91,8 @@ impl Doubt {
             | Self::SmallAngles { .. }
             | Self::NoRotation { .. }
             | Self::OtherLength { .. }
-            | Self::FarFromSurface { .. } => (OnPhoto::Nothing, InView::Flight),
+            | Self::FarFromSurface { .. }
+            | Self::OtherUnit { .. } => (OnPhoto::Nothing, InView::Flight),
             Self::FileMissing { .. }
             | Self::NoPhotoFolder { .. }
             | Self::ReducedPhotos { .. }

@@ -90,6 +90,7 @@ fn nothing_is_trusted_before_it_was_looked_at() {
     let top = photo.edges(LengthUnit::Centimetre).top.unwrap();
     assert!((top - 0.25).abs() < 1e-12, "{top}");
     assert_eq!(photo.notes(), [""; 0]);
+    assert!(photo.sees_surface());
     // A corner's ray comes in at atan(4 / (2 * sqrt 2)), 54.7 degrees.
     review.take_limits(&Limits {
         flattest_angle: 55.0,

@@ -16,7 +16,8 @@
 //! computed anew.
 //!
 //! Not done in part: thinning (what stays of a cell hangs on all of its points), and what needs all of the cloud (the
-//! ground under a photo that shows no point of it). Not looked at: whether the photos have the cloud's colours.
+//! ground under a photo that shows no point of it). Not looked at: whether the photos have the cloud's colours, and
+//! whether they count in another unit than the cloud, for where they would be then is not where they look.
 
 mod looking;
 mod memory;
