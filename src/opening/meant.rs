@@ -12,8 +12,11 @@ use crate::formats::{Candidate, Kind, Package, candidates, detect, is_of_photos}
 /// choice is a person's.
 pub fn meant_by(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Vec<Candidate>> {
     let meant = paths.iter().map(|path| {
-        if !path.is_dir() || detect(path).is_ok() || is_of_their_photos(path, paths) {
+        if !path.is_dir() || detect(path).is_ok() {
             return Ok(path.clone());
+        }
+        if let Some(photos) = of_their_photos(path, paths) {
+            return Ok(photos);
         }
         let mut found = candidates(path);
         match found.len() {
@@ -26,22 +29,33 @@ pub fn meant_by(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Vec<Candidate>> {
     meant.collect()
 }
 
-/// Whether a folder that was named with others is that of their photos: photos lie in it, or, beside a flight, in the folders right
-/// below it, and nothing else does.
+/// Whether a folder that was named with others is that of their photos.
 pub(crate) fn is_of_their_photos(folder: &Path, named: &[PathBuf]) -> bool {
+    of_their_photos(folder, named).is_some_and(|photos| photos == folder)
+}
+
+/// The folder of their photos that is meant by one that was named with others: itself where photos lie in it, or, beside a flight, the one
+/// right above all folders of photos (a card's DCIM), where nothing else lies in its folders.
+fn of_their_photos(folder: &Path, named: &[PathBuf]) -> Option<PathBuf> {
     let is_flight = |path: &PathBuf| match detect(path) {
         Ok(Kind::Flight(_)) => true,
         Ok(Kind::Reconstruction(package, _)) => package != Package::Photos,
         _ => false,
     };
-    let is_above_photos = || {
-        let found = candidates(folder);
-        let is_one = |one: &Candidate| {
-            one.package == Some(Package::Photos) && one.path.parent() == Some(folder)
-        };
-        !found.is_empty() && found.iter().all(is_one)
-    };
-    named.len() > 1 && (is_of_photos(folder) || is_above_photos() && named.iter().any(is_flight))
+    if named.len() < 2 {
+        return None;
+    }
+    if is_of_photos(folder) {
+        return Some(folder.to_owned());
+    }
+    if !named.iter().any(is_flight) {
+        return None;
+    }
+    let found = candidates(folder);
+    let above = found.first()?.path.parent()?;
+    let is_one =
+        |one: &Candidate| one.package == Some(Package::Photos) && one.path.parent() == Some(above);
+    found.iter().all(is_one).then(|| above.to_owned())
 }
 
 #[cfg(test)]
@@ -90,5 +104,29 @@ mod tests {
         assert_eq!(dropped.options.photos.as_ref(), Some(&photos));
         assert_eq!(meant_by(&[cloud, photos.clone()]).unwrap_err().len(), 2);
         assert_eq!(meant_by(&[photos]).unwrap_err().len(), 2);
+    }
+
+    /// A card has its folders of photos in its DCIM: that is the folder of the photos, and no choice of flights.
+    #[test]
+    fn a_card_beside_a_flight_has_its_photos() {
+        let folder = tempfile::tempdir().unwrap();
+        let flight = folder.path().join("f.toml");
+        fs::write(&flight, "format = 1\n").unwrap();
+        let card = folder.path().join("card");
+        let add = |within: &str| {
+            fs::create_dir_all(card.join(within)).unwrap();
+            fs::write(card.join(within).join("1.jpg"), "x").unwrap();
+        };
+        add("DCIM/100MEDIA");
+        add("DCIM/101MEDIA");
+        let meant = meant_by(&[flight.clone(), card.clone()]).unwrap();
+        assert_eq!(meant, [flight.clone(), card.join("DCIM")]);
+        let dropped = Dropped::sort(&meant).unwrap();
+        assert_eq!(dropped.flight.as_ref(), Some(&flight));
+        assert_eq!(dropped.options.photos, Some(card.join("DCIM")));
+        assert_eq!(meant_by(std::slice::from_ref(&card)).unwrap_err().len(), 2);
+        // Photos in folders of different ones are as many flights.
+        add("other/100MEDIA");
+        assert_eq!(meant_by(&[flight, card]).unwrap_err().len(), 3);
     }
 }

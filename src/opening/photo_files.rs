@@ -109,8 +109,8 @@ pub(crate) fn set_sizes_from_files(
         sizes.push(size);
         if let (None, Some(photo)) = (size, first) {
             let why = why.unwrap_or_else(|| match folder.folder {
-                Some(path) => match folder.in_several(&[photo.as_str()]) {
-                    Some(several) => format!("{}: {several}", path.display()),
+                Some(path) => match why_not_found(folder, &photo) {
+                    Some(fault) => format!("{}: {fault}", path.display()),
                     None => format!("there is no such image file in {}", path.display()),
                 },
                 None => "there is no such image file".to_owned(),
@@ -144,6 +144,12 @@ pub(crate) fn set_sizes_from_files(
     }
     reconstruction.set_sizes(|camera| sizes.get(camera).copied().flatten());
     Ok(())
+}
+
+/// Why the file of a photo is not taken, though the folder has one of its name.
+fn why_not_found(folder: &PhotoFolder<'_>, photo: &str) -> Option<Fault> {
+    let several = folder.in_several(&[photo]);
+    several.or_else(|| folder.dead_links(&[photo]))
 }
 
 /// Rescales each camera to the size of its photo files, where those have the same shape; photos of
@@ -188,7 +194,9 @@ pub(crate) fn fit_cameras_to_files(
             first_names(&missing)
         ));
         let several = folder.in_several(&missing);
-        warnings.extend(several.map(|fault| format!("{}: {fault}", path.display())));
+        let dead = folder.dead_links(&missing);
+        let why = several.into_iter().chain(dead);
+        warnings.extend(why.map(|fault| format!("{}: {fault}", path.display())));
     }
     for (index, camera) in cameras.iter_mut().enumerate() {
         let of_camera = photos

@@ -222,6 +222,17 @@ fn what_does_not_belong_is_said() {
         assert!(error.contains(why) && error.lines().count() == 1, "{error}");
         assert!(!flight.exists());
     }
+    // In folders within the named one, beside a picture that is none of them.
+    let mine = folder.path().join("mine");
+    for name in ["logo.jpg", "sub1/IMG_1.JPG", "sub2/IMG_2.JPG"] {
+        let path = mine.join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        fs::write(path, "").expect("written");
+    }
+    let arguments = ["--positions", text(&list), "--photos", text(&mine)];
+    let done = fragscale(&command(folder.path(), &arguments));
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{said}");
     let done = fragscale(&command(
         folder.path(),
         &[&known[..], &["--level"]].concat(),

@@ -67,6 +67,7 @@ pub(in crate::cli) fn georeference(
     let photos = arguments.photos.as_ref().or(of_flight);
     let request = GeoreferenceRequest {
         photos: photos.cloned(),
+        photos_are_packages: false,
         positions: arguments.positions.clone(),
         control_points: arguments.gcp.clone(),
         marked: None,

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use super::image_names::{is_image, readable};
 use super::photo_size;
 use super::photos_below::{
-    LOOKED_THROUGH, PhotosBelow, folders_of_photos, images_below, is_cameras, is_companion,
+    LOOKED_THROUGH, folders_of_photos, images_below, is_cameras, is_companion, photos_in,
 };
 use crate::fault::{Fault, first_names};
 use crate::files::{last_segment, open_file, same_name, unreadable_folder};
@@ -17,61 +17,94 @@ use crate::packages::reconstruction::Reconstruction;
 /// How many files an error about a folder names.
 const SHOWN: usize = 2;
 
+/// A photo whose file is looked for: its name, and which size the file has, where that is known.
+pub type WantedPhoto<'a> = (&'a str, Option<(u32, u32)>);
+
 /// The folder of a flight's image files, if it has one.
 pub struct PhotoFolder<'a> {
     /// Where they are, if a folder is known.
     pub folder: Option<&'a Path>,
-    /// Its files by the keys of their names (`same_name`): those directly in it, or, where no image is among them, those in folders
-    /// in it, too. Which of several is meant is not for us to say.
+    /// Its files by the keys of their names (`same_name`): those directly in it, and, where the photos are not among them, those in
+    /// folders in it, too. Which of several is meant is not for us to say.
     files: HashMap<String, Vec<PathBuf>>,
     /// The names of those folders, by their keys.
     within: BTreeMap<String, String>,
+    /// Of photos whose names several files have, the only one that has the size of the photo.
+    by_size: BTreeMap<String, PathBuf>,
 }
 
 impl<'a> PhotoFolder<'a> {
     /// The files of a folder that a package leads to; where it has no images itself, those in the folders that a camera made in it.
     /// Others may be of other flights, whose photos have the same names.
     pub fn new(folder: Option<&'a Path>) -> Self {
-        Self::with(folder, on_card)
+        let mut files = Self::of_itself(folder);
+        if let Some(folder) = folder
+            && !files.files.keys().any(|name| is_image(name))
+        {
+            files.add_below(on_card(folder));
+        }
+        files
     }
 
-    /// The files of a folder that somebody named for the photos; where it has no images itself, those in all folders right below it, or,
-    /// of very many files, in those that a camera made.
-    pub fn named(folder: Option<&'a Path>) -> Self {
-        Self::with(folder, |folder| {
-            images_below(folder, LOOKED_THROUGH).unwrap_or_else(|| on_card(folder))
-        })
+    /// The files of a folder that somebody named for these photos; where none of them lies in it, whatever pictures else do, those in
+    /// all folders right below it, or, of very many files, in those that a camera made. Where several of these have the name of a
+    /// photo, as those of thumbnails do, the only one that has its size is taken, if none is larger.
+    pub fn named(folder: Option<&'a Path>, photos: &[WantedPhoto<'_>]) -> Self {
+        let mut files = Self::of_itself(folder);
+        if let Some(folder) = folder
+            && !photos
+                .iter()
+                .any(|(name, _)| !files.called(name).is_empty())
+        {
+            let below = images_below(folder, LOOKED_THROUGH);
+            files.add_below(below.unwrap_or_else(|| on_card(folder)));
+            let of_size = photos.iter().filter_map(|(name, size)| {
+                let path = only_of_size(&files.called(name), (*size)?)?;
+                Some(((*name).to_owned(), path.to_owned()))
+            });
+            files.by_size = of_size.collect();
+        }
+        files
     }
 
-    fn with(folder: Option<&'a Path>, below: impl FnOnce(&Path) -> Vec<PathBuf>) -> Self {
+    /// The files that lie in a folder itself.
+    fn of_itself(folder: Option<&'a Path>) -> Self {
+        let mut files = Self {
+            folder,
+            files: HashMap::new(),
+            within: BTreeMap::new(),
+            by_size: BTreeMap::new(),
+        };
         let entries = folder.and_then(|folder| std::fs::read_dir(folder).ok());
         let entries = entries.into_iter().flatten().flatten();
         let paths = entries.map(|entry| entry.path());
-        let mut paths: Vec<PathBuf> = paths.filter(|path| !is_companion(path)).collect();
-        let mut within = BTreeMap::new();
-        if let Some(folder) = folder
-            && !paths.iter().any(|path| is_image(&name_of(path)))
-        {
-            let found = below(folder);
-            let names = found.iter().map(|path| folder_of(path));
-            within.extend(names.map(|name| (same_name::key(&name), name)));
-            paths.extend(found);
-        }
-        let mut files: HashMap<String, Vec<PathBuf>> = HashMap::new();
+        files.add(paths.filter(|path| !is_companion(path)));
+        files
+    }
+
+    fn add(&mut self, paths: impl IntoIterator<Item = PathBuf>) {
         for path in paths {
             let key = same_name::key(&name_of(&path));
-            files.entry(key).or_default().push(path);
-        }
-        Self {
-            folder,
-            files,
-            within,
+            self.files.entry(key).or_default().push(path);
         }
     }
 
+    fn add_below(&mut self, paths: Vec<PathBuf>) {
+        let names = paths.iter().map(|path| folder_of(path));
+        self.within
+            .extend(names.map(|name| (same_name::key(&name), name)));
+        self.add(paths);
+    }
+
+    /// Whether the files of folders within it were looked through, because the photos do not lie in it itself.
+    pub fn is_looked_through(&self) -> bool {
+        !self.within.is_empty()
+    }
+
     /// The file of a photo: its name below the folder, or the last part of its name in the folder,
-    /// whatever its case and whether its accents stand apart, perhaps with an ending more, or with its ending spelt otherwise (jpeg for jpg). Where the photo's own name has
-    /// two endings ("DJI_0025.JPG.tif"), the file may have the first alone.
+    /// whatever its case and whether its accents stand apart, perhaps with an ending more, or with its ending spelt otherwise (jpeg for
+    /// jpg). Where the photo's own name has two endings ("DJI_0025.JPG.tif"), the file may have the first alone. Of several files of its
+    /// name none, but where one alone has its size.
     pub fn find(&self, photo: &str) -> Option<PathBuf> {
         let folder = self.folder?;
         let last = last_segment(photo);
@@ -83,6 +116,7 @@ impl<'a> PhotoFolder<'a> {
             .chain(std::iter::once(last.to_owned()))
             .map(|name| folder.join(name));
         let found = as_named.find(|path| path.is_file());
+        let found = found.or_else(|| self.by_size.get(photo).cloned());
         found.or_else(|| match self.called(photo)[..] {
             [only] => Some(only.to_owned()),
             _ => None,
@@ -91,6 +125,11 @@ impl<'a> PhotoFolder<'a> {
 
     /// The files that are called as a photo is: those of the first way to write the last part of its name that any has.
     fn called(&self, photo: &str) -> Vec<&Path> {
+        self.called_where(photo, Path::is_file)
+    }
+
+    /// The same of entries of a folder that are something else.
+    fn called_where(&self, photo: &str, is_it: fn(&Path) -> bool) -> Vec<&Path> {
         let last = last_segment(photo);
         let first_ending = last.rsplit_once('.').map(|(stem, _)| stem);
         let bare = first_ending.filter(|stem| is_image(stem));
@@ -104,7 +143,7 @@ impl<'a> PhotoFolder<'a> {
             let files = self.files.get(&same_name::key(&name));
             let files = files.into_iter().flatten().map(PathBuf::as_path);
             let files = files.filter(|path| self.may_be(path, photo));
-            files.filter(|path| path.is_file()).collect()
+            files.filter(|path| is_it(path)).collect()
         };
         let mut files = names.map(files).filter(|files| !files.is_empty());
         files.next().unwrap_or_default()
@@ -149,6 +188,42 @@ impl<'a> PhotoFolder<'a> {
         ))
     }
 
+    /// That photos whose names are in several folders within it are known by their size; `None` where there are no such photos.
+    pub fn chosen_by_size(&self) -> Option<String> {
+        let names = self.by_size.keys();
+        let folders = names.clone().flat_map(|photo| self.called(photo));
+        let folders: BTreeSet<String> = folders.map(folder_of).collect();
+        let taken: BTreeSet<String> = self.by_size.values().map(|path| folder_of(path)).collect();
+        (!taken.is_empty()).then(|| {
+            format!(
+                "several folders within it ({}) have files called as the flight's photos ({}): those of the photos' size in pixels are \
+                 taken ({})",
+                first_names(&folders),
+                first_names(names),
+                first_names(&taken)
+            )
+        })
+    }
+
+    /// That the files of photos are links to what is not there; `None` where there are no such photos.
+    pub fn dead_links(&self, photos: &[&str]) -> Option<Fault> {
+        let is_dead = |photo: &&&str| {
+            self.find(photo).is_none() && !self.called_where(photo, is_dead_link).is_empty()
+        };
+        let names: Vec<&str> = photos.iter().filter(is_dead).copied().collect();
+        let what = match names[..] {
+            [] => return None,
+            [name] => format!("the file of the flight's photo {name} is a link that leads nowhere"),
+            _ => format!(
+                "the files of {} of the flight's photos ({}) are links that lead nowhere",
+                names.len(),
+                first_names(&names)
+            ),
+        };
+        let remedy = "put the photos themselves there, or connect the disk that the links lead to";
+        Some(Fault::new(what, remedy))
+    }
+
     /// Refuses a folder that somebody named for the photos and that cannot be theirs.
     ///
     /// # Errors
@@ -170,15 +245,25 @@ impl<'a> PhotoFolder<'a> {
         if let Some(fault) = self.in_several(photos) {
             return Err(fault);
         }
-        let mut there: Vec<&str> = self.files.keys().map(String::as_str).collect();
-        there.retain(|name| is_image(name));
+        if let Some(fault) = self.dead_links(photos) {
+            return Err(fault);
+        }
+        let own = self.files.iter().filter(|(name, paths)| {
+            is_image(name) && paths.iter().any(|path| path.parent() == Some(folder))
+        });
+        let mut there: Vec<&str> = own.map(|(name, _)| name.as_str()).collect();
         there.sort_unstable();
         let images = there.len();
         there.truncate(SHOWN);
         let not_looked_into = folders_of_photos(folder);
         let there = match (images, self.within.is_empty(), not_looked_into.is_empty()) {
-            (_, false, _) => format!(
+            (0, false, _) => format!(
                 "no images itself, and in the folders within it ({})",
+                first_names(self.within.values())
+            ),
+            (n, false, _) => format!(
+                "{n} images ({}, ...), but also in the folders within it ({})",
+                there.join(", "),
                 first_names(self.within.values())
             ),
             (0, _, true) => "no images, and so".to_owned(),
@@ -208,8 +293,35 @@ impl<'a> PhotoFolder<'a> {
 
 /// The photos in the folders that a camera made in a folder.
 fn on_card(card: &Path) -> Vec<PathBuf> {
-    let below = PhotosBelow::read(card).unwrap_or_default();
-    below.photos.into_iter().map(|(_, path)| path).collect()
+    let cameras = folders_of_photos(card).into_iter();
+    let cameras = cameras.filter(|name| is_cameras(name));
+    // One that cannot be read has no photos that anybody could take.
+    let photos = cameras.flat_map(|name| photos_in(&card.join(name)).unwrap_or_default());
+    photos.collect()
+}
+
+/// The only one of several files that has a size in pixels; of one alone nothing is asked. Where another one is larger, the size may be
+/// that of reduced photos, on which a package solved, and not of those that were shot: then none is taken.
+fn only_of_size<'f>(files: &[&'f Path], size: (u32, u32)) -> Option<&'f Path> {
+    if files.len() < 2 {
+        return None;
+    }
+    let sizes = files.iter().map(|path| size_of_file(path).ok());
+    let sizes: Vec<Option<(u32, u32)>> = sizes.collect();
+    let pixels = |(width, height): (u32, u32)| u64::from(width) * u64::from(height);
+    let mut known = sizes.iter().flatten();
+    if known.any(|its| pixels(*its) > pixels(size)) {
+        return None;
+    }
+    let all = files.iter().zip(&sizes);
+    let mut fitting = all.filter(|(_, its)| **its == Some(size));
+    let (path, _) = fitting.next()?;
+    fitting.next().is_none().then_some(*path)
+}
+
+/// Whether a path is a link to what is not there.
+fn is_dead_link(path: &Path) -> bool {
+    path.is_symlink() && !path.exists()
 }
 
 /// The name of a file.
@@ -262,133 +374,4 @@ pub fn folder_of_photos(
 }
 
 #[cfg(test)]
-mod tests {
-    use std::fs;
-
-    use super::*;
-
-    /// One format, spelt in two ways; the same name of another format is another photo, as a thermal camera's beside it.
-    #[test]
-    fn an_ending_spelt_otherwise_is_found() {
-        let folder = tempfile::tempdir().unwrap();
-        for name in ["a.JPEG", "b.jpg", "c.tif", "d.png"] {
-            fs::write(folder.path().join(name), "a photo").unwrap();
-        }
-        let files = PhotoFolder::new(Some(folder.path()));
-        let found = ["a.jpg", "b.jpeg", "c.TIFF", "d.jpg"].map(|name| files.find(name).is_some());
-        assert_eq!(found, [true, true, true, false]);
-    }
-
-    /// A folder as macOS wrote it beside a list of poses from elsewhere, and the other way round; also where a folder's name has
-    /// accents.
-    #[test]
-    fn accents_apart_are_the_same_letters() {
-        let folder = tempfile::tempdir().unwrap();
-        for name in [
-            "Bo\u{308}schung 1.JPG",
-            "B\u{f6}schung 2.JPG",
-            "Su\u{308}d/3.jpg",
-            "N\u{f6}rd/4.jpg",
-        ] {
-            let path = folder.path().join(name);
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, &name[name.len() - 5..]).unwrap();
-        }
-        let files = PhotoFolder::new(Some(folder.path()));
-        for (asked, found) in [
-            ("B\u{f6}schung 1.JPG", "1.JPG"),
-            ("b\u{f6}schung 1", "1.JPG"),
-            ("D:\\flug\\Bo\u{308}schung 2.JPG", "2.JPG"),
-            ("S\u{fc}d/3.jpg", "3.jpg"),
-            ("No\u{308}rd/4.jpg", "4.jpg"),
-        ] {
-            let path = files.find(asked).expect(asked);
-            assert_eq!(fs::read_to_string(path).unwrap(), found, "{asked}");
-        }
-        assert_eq!(files.find("Boschung 1.JPG"), None);
-    }
-
-    /// Folders of an engineer's own: the photos of a folder that is named lie right below it. A package's may hold other flights'.
-    #[test]
-    fn a_named_folder_has_the_photos_in_its_folders() {
-        let folder = tempfile::tempdir().unwrap();
-        for name in [
-            "sub1/IMG_0001.JPG",
-            "sub1/IMG_0003.jpg",
-            "sub2/IMG_0002.jpg",
-            "sub2/IMG_0003.jpg",
-            "sub2/IMG_0003.jpeg",
-            "100MEDIA/DJI_0500.JPG",
-            "sub2/deeper/IMG_0004.jpg",
-        ] {
-            let path = folder.path().join(name);
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, "a photo").unwrap();
-        }
-        let named = PhotoFolder::named(Some(folder.path()));
-        for (photo, file) in [
-            ("IMG_0001.jpg", Some("sub1/IMG_0001.JPG")),
-            ("img_0002", Some("sub2/IMG_0002.jpg")),
-            // In both; the folder before it tells, as other systems write it, too.
-            ("IMG_0003.jpg", None),
-            ("sub2/IMG_0003.jpg", Some("sub2/IMG_0003.jpg")),
-            (r"D:\flug\SUB1\IMG_0003.jpg", Some("sub1/IMG_0003.jpg")),
-            // Not there, whatever the other folder has.
-            ("sub1/IMG_0002.jpg", None),
-            ("101MEDIA/DJI_0500.JPG", None),
-            // A folder that nothing is known of does not tell.
-            ("photos/IMG_0001.jpg", Some("sub1/IMG_0001.JPG")),
-            ("photos/DJI_0500.JPG", Some("100MEDIA/DJI_0500.JPG")),
-            ("IMG_0004.jpg", None),
-        ] {
-            let expected = file.map(|file| folder.path().join(file));
-            assert_eq!(named.find(photo), expected, "{photo}");
-        }
-        assert!(named.check(&["IMG_0001.jpg", "IMG_0003.jpg"]).is_ok());
-        let fault = named.check(&["IMG_0003.jpg"]).unwrap_err();
-        let words = "several folders within it (sub1, sub2) have files called as the flight's photos (IMG_0003.jpg)";
-        assert!(fault.what.starts_with(words), "{fault}");
-        assert!(fault.remedy.contains("(sub1/IMG_0003.jpg)"), "{fault}");
-        assert_eq!(named.in_several(&["IMG_0001.jpg", "IMG_0004.jpg"]), None);
-        let found = PhotoFolder::new(Some(folder.path()));
-        assert_eq!(found.find("IMG_0001.jpg"), None);
-    }
-
-    /// A memory card's DCIM, of which a package kept the names of files alone: what two of its folders have is nobody's.
-    #[test]
-    fn a_card_is_the_folder_of_the_photos_in_its_folders() {
-        let card = tempfile::tempdir().unwrap();
-        let write = |name: &str| {
-            let path = card.path().join(name);
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, "a photo").unwrap();
-        };
-        for name in [
-            "100MEDIA/DJI_0998.JPG",
-            "101MEDIA/DJI_0999.JPG",
-            "north/DJI_0001.JPG",
-        ] {
-            write(name);
-        }
-        for folder in ["100MEDIA", "101MEDIA"] {
-            write(&format!("{folder}/DJI_0500.JPG"));
-        }
-        let found = |photo: &str| {
-            let path = PhotoFolder::new(Some(card.path())).find(photo)?;
-            Some(path.strip_prefix(card.path()).unwrap().to_owned())
-        };
-        assert_eq!(found("DJI_0998.JPG"), Some("100MEDIA/DJI_0998.JPG".into()));
-        assert_eq!(found("dji_0999"), Some("101MEDIA/DJI_0999.JPG".into()));
-        assert_eq!(found("DJI_0500.JPG"), None);
-        assert_eq!(
-            found("101MEDIA/DJI_0500.JPG"),
-            Some("101MEDIA/DJI_0500.JPG".into())
-        );
-        // No camera made it.
-        assert_eq!(found("DJI_0001.JPG"), None);
-        // Photos of its own are those that are meant.
-        write("DJI_0500.JPG");
-        assert_eq!(found("DJI_0500.JPG"), Some("DJI_0500.JPG".into()));
-        assert_eq!(found("DJI_0998.JPG"), None);
-    }
-}
+mod tests;

@@ -66,7 +66,7 @@ fn of_other_endings(folder: &Path, photos: &[(String, PathBuf)]) -> Vec<String> 
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         is_ending(&ending, Ending::Unread)
             && !is_photo(path)
-            && !is_companion(path)
+            && is_no_other(path)
             && !known.contains(&stem(path))
             && path.is_file()
     });
@@ -95,12 +95,24 @@ pub(crate) fn is_companion(path: &Path) -> bool {
     name.to_string_lossy().starts_with("._")
 }
 
+/// Whether a file is called as a label image of fragments: no photo, though it lies beside them.
+pub fn is_label_image(path: &Path) -> bool {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let stem = stem.to_ascii_lowercase();
+    stem.ends_with("_labels") || stem.ends_with(".labels")
+}
+
+/// Whether what is named like a photo is one.
+fn is_no_other(path: &Path) -> bool {
+    !is_companion(path) && !is_label_image(path)
+}
+
 /// Whether a folder has photos in it.
 pub(crate) fn has_photos(folder: &Path) -> bool {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries
         .map(|entry| entry.path())
-        .any(|path| is_photo(&path) && !is_companion(&path))
+        .any(|path| is_photo(&path) && is_no_other(&path))
 }
 
 /// The photos that lie in a folder itself, by name.
@@ -121,7 +133,7 @@ pub(crate) fn photos_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
     let mut photos = Vec::new();
     for entry in fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
-        if is_photo(&path) && !is_companion(&path) {
+        if is_photo(&path) && is_no_other(&path) {
             photos.push(path);
         }
     }
@@ -237,6 +249,8 @@ mod tests {
         add("", "ortho.TIF");
         add("", "IMG_1.HEIC");
         add("", "own.jpg");
+        add("", "own_labels.png");
+        add("", "own.labels.PNG");
         add("", "._own.jpg");
         add("", "._IMG_1.HEIC");
         assert_eq!(found(), pair("own.jpg", others));

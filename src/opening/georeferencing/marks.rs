@@ -1,7 +1,5 @@
 //! Ground control points found in the reconstruction, from their marks in photos.
 
-use std::path::Path;
-
 use glam::{DVec2, DVec3};
 
 use super::photo_names::PhotoNames;
@@ -43,7 +41,7 @@ pub(super) struct MarkedPoint {
 pub(super) fn triangulated(
     reconstruction: &Reconstruction,
     points: &ControlList,
-    folder: Option<&Path>,
+    folder: &PhotoFolder<'_>,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<MarkedPoint>, Fault> {
     let marked = points.points.iter().flat_map(|point| &point.marks);
@@ -58,7 +56,6 @@ pub(super) fn triangulated(
         reconstruction.photos.iter().map(|p| p.name.as_str()),
         &listed,
     );
-    let folder = PhotoFolder::new(folder);
     let mut unknown: Vec<&str> = listed
         .iter()
         .copied()
@@ -82,7 +79,7 @@ pub(super) fn triangulated(
             else {
                 continue;
             };
-            let camera = camera_of(reconstruction, photo.camera, &photo.name, &folder)?;
+            let camera = camera_of(reconstruction, photo.camera, &photo.name, folder)?;
             if !camera.contains(*pixel) {
                 return Err(outside(&point.name, &photo.name, *pixel, &camera));
             }

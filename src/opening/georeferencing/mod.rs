@@ -17,15 +17,16 @@ mod model_errors;
 mod of_flight;
 mod photo_names;
 mod receivers;
+mod request;
 mod turned_over;
 
 pub use self::control_file::{control_file, control_text, read_control};
 pub use self::flight_text::flight_text_of;
 pub use self::georeferenced::{Georeferenced, KnownKind, LengthResidual, PositionResidual};
 pub use self::of_flight::{BehindFlight, behind_flight};
+pub use self::request::{GeoreferenceRequest, KnownDistance, KnownEnds};
 
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 use glam::DVec3;
 
@@ -35,8 +36,8 @@ use self::georeferenced::percent;
 use self::list_world::ListWorld;
 use self::marks::MarkedPoint;
 use self::photo_names::PhotoNames;
+use self::request::chosen_by_size;
 use self::turned_over::turned_over;
-use crate::control::ControlList;
 use crate::fault::{Fault, first_names};
 use crate::files::FileError;
 use crate::flight::Flight;
@@ -48,71 +49,6 @@ use crate::jobs::Progress;
 use crate::numbers::TO_95_PERCENT;
 use crate::scale::StatedErrors;
 use crate::units::LengthUnit;
-
-/// What is known about a reconstruction's place in the world.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct GeoreferenceRequest {
-    /// The folder of the photos: their own positions, where nothing else is given, and their sizes.
-    pub photos: Option<PathBuf>,
-    /// A list of the photos' positions.
-    pub positions: Option<PathBuf>,
-    /// Ground control points; with positions as well, those are only compared.
-    pub control_points: Option<PathBuf>,
-    /// The same as they were marked in the window, instead of a list.
-    pub marked: Option<ControlList>,
-    /// Known distances: the scale. The place is then that of [`positions`](Self::positions) or of the photos' own, where there
-    /// are any, it is not to be level, and no points were marked in the window.
-    pub distances: Vec<KnownDistance>,
-    /// The coordinate system of the world, and of lists that state none.
-    pub crs: Option<String>,
-    /// With distances: whether to turn the plane of the reconstruction's points level.
-    pub level: bool,
-}
-
-/// A known distance between two points.
-#[derive(Debug, Clone, PartialEq)]
-pub struct KnownDistance {
-    /// The two points.
-    pub ends: KnownEnds,
-    /// In metres.
-    pub metres: f64,
-}
-
-/// Two points that have a known distance.
-#[derive(Debug, Clone, PartialEq)]
-pub enum KnownEnds {
-    /// In the reconstruction's frame.
-    Points(DVec3, DVec3),
-    /// Names of control points with marks.
-    Names(String, String),
-}
-
-impl FromStr for KnownDistance {
-    type Err = String;
-
-    /// Reads "x1,y1,z1 x2,y2,z2 12.5" or "name1 name2 12.5", the distance in metres.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let words: Vec<&str> = text.split_whitespace().collect();
-        let [a, b, metres] = words[..] else {
-            return Err("give two points and their distance, \"x1,y1,z1 x2,y2,z2 12.5\" or \"name1 name2 12.5\"".to_owned());
-        };
-        let metres = match metres.parse() {
-            Ok(metres) if metres > 0.0 && f64::is_finite(metres) => metres,
-            _ => return Err(format!("'{metres}' is no distance above 0 in metres")),
-        };
-        let point = |text: &str| {
-            let numbers: Result<Vec<f64>, _> = text.split(',').map(str::parse).collect();
-            let numbers: [f64; 3] = numbers.ok()?.try_into().ok()?;
-            Some(DVec3::from_array(numbers)).filter(|point| point.is_finite())
-        };
-        let ends = match (point(a), point(b)) {
-            (Some(a), Some(b)) => KnownEnds::Points(a, b),
-            (None, None) => KnownEnds::Names(a.to_owned(), b.to_owned()),
-            _ => return Err("give two points as x,y,z or two names".to_owned()),
-        };
-        Ok(Self { ends, metres })
-    }
-}
 
 /// Surveyed points that a place in the world needs.
 const LEAST_SURVEYED: usize = 3;
@@ -129,17 +65,19 @@ pub fn georeference(
 ) -> Result<Georeferenced, FileError> {
     progress.stage(format!("reading {}", path.display()));
     let project = read_project(path, progress)?;
-    if let Some(folder) = &request.photos {
-        let photos = project.reconstruction.photos.iter();
-        let names: Vec<&str> = photos.map(|photo| photo.name.as_str()).collect();
-        let checked = PhotoFolder::new(Some(folder)).check(&names);
-        checked.map_err(|fault| FileError::new(folder, fault))?;
-    }
-    let photos = request.photos.clone().or(project.photos);
+    let is_given = request.photos.is_some();
     let request = GeoreferenceRequest {
-        photos,
+        photos: request.photos.clone().or(project.photos),
+        photos_are_packages: !is_given || request.photos_are_packages,
         ..request.clone()
     };
+    let photos = request.photo_folder(&project.reconstruction);
+    if let Some(folder) = photos.folder.filter(|_| is_given) {
+        let named = project.reconstruction.photos.iter();
+        let names: Vec<&str> = named.map(|photo| photo.name.as_str()).collect();
+        let checked = photos.check(&names);
+        checked.map_err(|fault| FileError::new(folder, fault))?;
+    }
     let at = |fault| FileError::new(path, fault);
     if let Some(crs) = &project.reconstruction.crs {
         let crs = crs.split(['[', ',']).next().unwrap_or_default();
@@ -149,10 +87,10 @@ pub fn georeference(
         )));
     }
     progress.stage("fitting");
-    let mut result = georeference_model(path, &project.reconstruction, &request)?;
-    let photos = request.photos.as_deref();
+    let mut result = with_photos(path, (&project.reconstruction, &photos), &request)?;
     let (model, placed) = (project.reconstruction, &result.similarity);
-    let found = model_errors::of_model(model, photos, placed, progress).map_err(at)?;
+    result.warnings.extend(chosen_by_size(&photos));
+    let found = model_errors::of_model(model, &photos, placed, progress).map_err(at)?;
     result.take_errors(found);
     Ok(result)
 }
@@ -164,6 +102,16 @@ pub fn georeference(
 pub fn georeference_model(
     path: &Path,
     reconstruction: &Reconstruction,
+    request: &GeoreferenceRequest,
+) -> Result<Georeferenced, FileError> {
+    let photos = request.photo_folder(reconstruction);
+    with_photos(path, (reconstruction, &photos), request)
+}
+
+/// The same with the folder of its photos, in which a disk may have to be looked through: once.
+fn with_photos(
+    path: &Path,
+    (reconstruction, photos): (&Reconstruction, &PhotoFolder<'_>),
     request: &GeoreferenceRequest,
 ) -> Result<Georeferenced, FileError> {
     let mut warnings = reconstruction.warnings.clone();
@@ -181,7 +129,6 @@ pub fn georeference_model(
     let mut bars: Vec<KnownDistance> = Vec::new();
     if let Some(points) = &points {
         let list = request.control_points.as_deref().unwrap_or(path);
-        let photos = request.photos.as_deref();
         marked = marks::triangulated(reconstruction, points, photos, &mut warnings)
             .map_err(|fault| FileError::new(list, fault))?;
         bars = distances::of_bars(&points.bars, &marked, &mut warnings);
@@ -213,12 +160,10 @@ pub fn georeference_model(
         (Some(list), _) => Some((list.clone(), read_positions(list)?)),
         _ if !distances.is_empty() && (stays || surveyed >= LEAST_SURVEYED) => None,
         // Photos that say nothing are no fault here.
-        _ if !distances.is_empty() => {
-            receivers::positions(path, reconstruction, request.photos.as_deref())
-                .ok()
-                .flatten()
-        }
-        (None, None) => receivers::positions(path, reconstruction, request.photos.as_deref())?,
+        _ if !distances.is_empty() => receivers::positions(path, reconstruction, photos)
+            .ok()
+            .flatten(),
+        (None, None) => receivers::positions(path, reconstruction, photos)?,
         // Nobody asked for the photos' own: those that the package kept are compared, where the points' world has a place on
         // the Earth.
         (None, Some(points)) => (points.crs.as_ref().or(request.crs.as_ref()))
@@ -355,7 +300,7 @@ pub fn georeference_model(
     warnings.extend(turned_over(&marked, &reconstruction.photos, &result));
     // In a local world there is nothing to compare, and no photo is looked into.
     if result.crs.is_some() && (points.is_some() || request.positions.is_some()) {
-        let own = receivers::positions(path, reconstruction, request.photos.as_deref());
+        let own = receivers::positions(path, reconstruction, photos);
         // Photos that say nothing are no fault here: a list was given.
         let own = own.ok().flatten();
         warnings.extend(

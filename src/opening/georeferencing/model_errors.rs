@@ -32,7 +32,7 @@ const STAGE: &str = "how sure the poses are";
 /// Where it is cancelled.
 pub(super) fn of_model(
     model: Reconstruction,
-    photos: Option<&Path>,
+    photos: &PhotoFolder<'_>,
     to_world: &Similarity,
     progress: &Progress,
 ) -> Result<Result<StatedErrors, String>, Fault> {
@@ -54,15 +54,15 @@ pub(super) fn of_model(
 /// The model with the sizes of its photos and without wrong matches, or why there is no such thing.
 fn with_good_matches(
     mut model: Reconstruction,
-    photos: Option<&Path>,
+    photos: &PhotoFolder<'_>,
 ) -> Result<Reconstruction, String> {
     if model.observations.is_empty() {
         return Err("the model keeps nothing of what its photos see".to_owned());
     }
     if !model.sizes.are_known() {
         // Which photos are left out for it is said where the flight is opened.
-        let (photos, mut left_out) = (PhotoFolder::new(photos), Vec::new());
-        set_sizes_from_files(&mut model, &photos, |_| None, &mut left_out)
+        let mut left_out = Vec::new();
+        set_sizes_from_files(&mut model, photos, |_| None, &mut left_out)
             .map_err(|_| "the sizes of its photos are not known (give their folder)".to_owned())?;
     }
     take_off_wrong_matches(&mut model);
@@ -197,10 +197,11 @@ impl Georeferenced {
     ) -> Result<(), FileError> {
         progress.stage(format!("reading {}", reconstruction.display()));
         let model = read_project(reconstruction, progress)?.reconstruction;
+        let photos = PhotoFolder::new(photos);
         let photos_of_flight = flight.parts().photos.iter();
         let moved = photos_of_flight.map(|photo| (photo.name.as_str(), photo.pose));
         let found = match to_moved(&model, moved) {
-            Ok(moved) => of_model(model, photos, &self.similarity.after(&moved), progress)
+            Ok(moved) => of_model(model, &photos, &self.similarity.after(&moved), progress)
                 .map_err(|fault| FileError::new(reconstruction, fault))?,
             Err(unknown) => Err(unknown),
         };
@@ -251,7 +252,8 @@ mod tests {
         photos: Option<&Path>,
         to_world: &Similarity,
     ) -> Result<StatedErrors, String> {
-        of_model(model, photos, to_world, &Progress::default()).unwrap()
+        let photos = PhotoFolder::new(photos);
+        of_model(model, &photos, to_world, &Progress::default()).unwrap()
     }
 
     fn known_sizes() -> Reconstruction {

@@ -10,7 +10,10 @@ use super::photo_names::PhotoNames;
 use super::{Georeferenced, Known, KnownKind};
 use crate::fault::first_names;
 use crate::files::FileError;
-use crate::formats::poses::position_list::{NamedPosition, PositionList, positions_of_photos};
+use crate::formats::photos::photo_folder::PhotoFolder;
+use crate::formats::poses::position_list::{
+    NamedPosition, PositionList, positions_of_files, positions_of_photos,
+};
 use crate::formats::{MeasuredPosition, Reconstruction};
 use crate::geometry::median;
 use crate::georeference::Pair;
@@ -24,15 +27,25 @@ const FURTHER_THAN_A_RECEIVER: f64 = 100.0;
 pub(super) fn positions(
     model: &Path,
     reconstruction: &Reconstruction,
-    photos: Option<&Path>,
+    photos: &PhotoFolder<'_>,
 ) -> Result<Option<(PathBuf, PositionList)>, FileError> {
     if let Some(kept) = kept(model, reconstruction) {
         return Ok(Some(kept));
     }
-    let Some(folder) = photos else {
+    let Some(folder) = photos.folder else {
         return Ok(None);
     };
-    Ok(Some((folder.to_owned(), positions_of_photos(folder)?)))
+    let named = reconstruction.photos.iter().map(|photo| &photo.name);
+    let found = named.filter_map(|name| Some((name.clone(), photos.find(name)?)));
+    let found: Vec<(String, PathBuf)> = match photos.is_looked_through() {
+        true => found.collect(),
+        false => Vec::new(),
+    };
+    let list = match found.is_empty() {
+        true => positions_of_photos(folder)?,
+        false => positions_of_files(folder, &found)?,
+    };
+    Ok(Some((folder.to_owned(), list)))
 }
 
 /// Those that the package kept.

@@ -7,7 +7,7 @@ use super::source::Source;
 use crate::fault::Fault;
 use crate::files::FileError;
 use crate::flight::{CameraEntry, CameraSource};
-use crate::formats::photos::photo_folder::PhotoFolder;
+use crate::formats::photos::photo_folder::{PhotoFolder, WantedPhoto};
 use crate::formats::{Reconstruction, read_camera};
 use crate::photo_files::{PhotoFile, files_of, fit_cameras_to_files, set_sizes_from_files};
 
@@ -104,7 +104,11 @@ pub(super) fn take_sizes(
             }
         }
     } else {
-        let folder = photo_folder(source.photo_folder.as_deref(), source.photo_folder_is_named);
+        let photos = reconstruction.photos.iter();
+        let photos: Vec<WantedPhoto<'_>> =
+            photos.map(|photo| (photo.name.as_str(), None)).collect();
+        let of_photos = source.photo_folder.as_deref();
+        let folder = photo_folder(of_photos, source.photo_folder_is_named, &photos);
         let mut said = Vec::new();
         set_sizes_from_files(reconstruction, &folder, given, &mut said).map_err(at)?;
         source.warn(path, &said);
@@ -113,9 +117,13 @@ pub(super) fn take_sizes(
 }
 
 /// The folder of the photos. One that somebody named for them is looked through with the folders in it.
-fn photo_folder(path: Option<&Path>, is_named: bool) -> PhotoFolder<'_> {
+fn photo_folder<'a>(
+    path: Option<&'a Path>,
+    is_named: bool,
+    photos: &[WantedPhoto<'_>],
+) -> PhotoFolder<'a> {
     match is_named {
-        true => PhotoFolder::named(path),
+        true => PhotoFolder::named(path, photos),
         false => PhotoFolder::new(path),
     }
 }
@@ -125,7 +133,16 @@ fn photo_folder(path: Option<&Path>, is_named: bool) -> PhotoFolder<'_> {
 /// # Errors
 /// Where the folder that somebody named cannot be the photos'.
 pub(super) fn fit(source: &mut Source) -> Result<Vec<PhotoFile>, FileError> {
-    let folder = photo_folder(source.photo_folder.as_deref(), source.photo_folder_is_named);
+    let photos = source.photos.iter().enumerate();
+    let photos = photos.map(|(index, photo)| {
+        let named = source.named_sizes.get(index).copied().flatten();
+        let camera = source.cameras.get(photo.camera);
+        let size = named.or(camera.map(|camera| (camera.width, camera.height)));
+        (photo.name.as_str(), size)
+    });
+    let photos: Vec<WantedPhoto<'_>> = photos.collect();
+    let path = source.photo_folder.as_deref();
+    let folder = photo_folder(path, source.photo_folder_is_named, &photos);
     if let Some(path) = &source.photo_folder
         && source.photo_folder_is_named
     {
@@ -138,6 +155,10 @@ pub(super) fn fit(source: &mut Source) -> Result<Vec<PhotoFile>, FileError> {
                     .collect::<Vec<_>>(),
             )
             .map_err(|fault| FileError::new(path, fault))?;
+        let chosen = folder.chosen_by_size();
+        source
+            .warnings
+            .extend(chosen.map(|said| format!("{}: {said}", path.display())));
     }
     let mut photo_files = files_of(&folder, &source.photos);
     for (index, file) in photo_files.iter_mut().enumerate() {
@@ -169,4 +190,39 @@ fn sizes_of_entries(entries: &[CameraEntry]) -> Result<Vec<GivenSize<'_>>, Fault
             )),
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use crate::jobs::Progress;
+    use crate::{OpenOptions, open_flight};
+
+    /// VisualSFM writes no sizes, and has a camera for each photo: where a table says that of one, and nobody has the photos, the other
+    /// one cannot be used.
+    #[test]
+    fn photos_of_a_camera_without_a_size_are_left_out() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        let nvm = "NVM_V3\n\n2\na.jpg 100 0 1 0 0 0 0 10 0 0\nb.jpg 100 0 1 0 0 1 0 10 0 0\n\n4\n\
+                   -9 -9 0 9 8 7 0\n9 -9 0 9 8 7 0\n-9 9 0 9 8 7 0\n9 9 0 9 8 7 0\n\n0\n";
+        fs::write(folder.join("a.nvm"), nvm).unwrap();
+        let flight = "format = 1\nworld.unit = \"m\"\nphotos.reconstruction = \"a.nvm\"\n\
+                      [[camera]]\nname = \"a.jpg\"\nwidth = 400\nheight = 300\n";
+        fs::write(folder.join("flight.toml"), flight).unwrap();
+        let opened = open_flight(folder, &OpenOptions::default(), &Progress::default()).unwrap();
+        let parts = opened.flight.parts();
+        let names: Vec<&str> = parts.photos.iter().map(|p| p.name.as_str()).collect();
+        assert_eq!(names, ["a.jpg"]);
+        let sizes: Vec<(u32, u32)> = parts.cameras.iter().map(|c| (c.width, c.height)).collect();
+        assert_eq!(sizes, [(400, 300)]);
+        let said = opened.warnings.iter();
+        let said: Vec<&String> = said.filter(|said| said.contains("is left out")).collect();
+        assert!(
+            said.len() == 1 && said[0].contains("photo 'b.jpg' is left out"),
+            "{:?}",
+            opened.warnings
+        );
+    }
 }

@@ -23,7 +23,7 @@ pub use known::{KnownPlaces, read_known_places};
 pub use mrk::number_of_photo;
 
 use std::collections::{BTreeSet, HashMap};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
@@ -91,14 +91,24 @@ pub fn read_control_points(path: &Path) -> Result<ControlPoints, FileError> {
 /// # Errors
 /// Where the folder cannot be read, or no photo has a position.
 pub fn positions_of_photos(folder: &Path) -> Result<PositionList, FileError> {
+    positions_of_files(folder, &PhotosBelow::read(folder)?.photos)
+}
+
+/// The same of some files, by the photos' names, that were found in a folder.
+///
+/// # Errors
+/// Where none of them says a place and a height.
+pub fn positions_of_files(
+    folder: &Path,
+    files: &[(String, PathBuf)],
+) -> Result<PositionList, FileError> {
     let mut list = PositionList {
         crs: Some("EPSG:4326".to_owned()),
         ..PositionList::default()
     };
-    let files = PhotosBelow::read(folder)?.photos;
     let mut references = BTreeSet::new();
     let mut without = Vec::new();
-    for (name, file) in &files {
+    for (name, file) in files {
         let metadata = photo_metadata::read_file(file).ok();
         let place = metadata.as_ref().and_then(|metadata| metadata.place);
         let gimbal = metadata.and_then(|metadata| metadata.orientation);

@@ -7,7 +7,7 @@ use super::stamp::Stamp;
 use super::track::NoPose;
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::files::last_segment;
+use crate::files::stem;
 
 /// Image files with their poses, and what became of the others.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -16,12 +16,6 @@ pub struct PosedFiles {
     pub photos: Vec<(String, Pose)>,
     /// Files without a pose, counted.
     pub warnings: Vec<String>,
-}
-
-/// What a file is called without its folder and extension.
-fn stem(file: &str) -> &str {
-    let name = last_segment(file);
-    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }
 
 /// The time that a file is named by: digits, perhaps with a point.
