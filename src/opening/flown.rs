@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fragscale_core::plan::{Flown, PlannedPose, Taken, ground_at, planned_poses};
+use fragscale_core::plan::{Flown, Mission, PlannedPose, Taken, ground_at, planned_poses};
 use glam::{DVec2, DVec3};
 
 use crate::fault::Fault;
@@ -38,16 +38,17 @@ pub struct ComparedFlight {
     pub places: Vec<DVec3>,
     /// Whether y of the world is the north of a map.
     pub is_on_map: bool,
-    /// What the mission's file says and nobody reads, one sentence each.
+    /// What the missions' files say and nobody reads, and what speaks against the comparison, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// Compares missions with the flight that came of them: one, or one of each battery in their order. `take_off` is where the drone took off in the world, where the mission does not say
-/// it, or was not followed.
+/// Compares missions with the flight that came of them: one, or one of each battery in their order. `take_off` is where the drone
+/// took off in the world, where the mission does not say it, or was not followed.
 ///
 /// # Errors
-/// With the mission's file: where it cannot be read, has no photos, or says less than a pose. With the flight's: where its
-/// coordinate system is not known, or its surface cannot be triangulated. Where the work was cancelled.
+/// With the mission's file: where it cannot be read, has no photos, says less than a pose, or lies kilometres from the flight or
+/// from `take_off`. With the flight's: where its coordinate system is not known, or its surface cannot be triangulated. Where the
+/// work was cancelled.
 pub fn compare_flown(
     missions: &[impl AsRef<Path>],
     of: FlightOfMission<'_>,
@@ -62,6 +63,13 @@ pub fn compare_flown(
     let crs = Crs::understand(crs).map_err(in_flight)?;
     let parts = of.flight.parts();
     let ground = |place| ground_at(&parts.surface, place);
+    let on_earth = |place: DVec3| {
+        let place = crs.to_geographic(place)?;
+        Some(DVec2::new(place.latitude, place.longitude))
+    };
+    let flown_at = parts.photos.iter().map(|photo| photo.pose.center);
+    let flown_at: Vec<DVec2> = flown_at.filter_map(on_earth).collect();
+    let took_off = take_off.and_then(|place| on_earth(place.extend(0.0)));
     let (mut planned, mut notes) = (Vec::new(), Vec::new());
     for mission in missions {
         let mission = mission.as_ref();
@@ -71,6 +79,12 @@ pub fn compare_flown(
             notes: own,
             ..
         } = read_mission(mission)?;
+        is_near(&told, &flown_at).map_err(in_mission)?;
+        if let Some(place) = took_off {
+            takes_off_near(&told, place).map_err(in_mission)?;
+            let said = takes_off_elsewhere(&told, place);
+            notes.extend(said.map(|said| format!("{}: {said}", mission.display())));
+        }
         let poses = planned_poses(&told, &crs, take_off, ground).map_err(in_mission)?;
         if poses.is_empty() {
             let what = "it has no photos to compare with";
@@ -89,6 +103,7 @@ pub fn compare_flown(
         .collect();
     progress.stage("planned against flown");
     let flown = Flown::compare(&planned, &taken, &parts.surface, progress).map_err(in_flight)?;
+    notes.extend(places_off(&flown, parts.unit));
     notes.extend(heights_off(&planned, &flown, &crs, parts.unit));
     Ok(ComparedFlight {
         photos: parts
@@ -101,6 +116,80 @@ pub fn compare_flown(
         planned,
         flown,
         notes,
+    })
+}
+
+/// Whether the mission lies where the flight was flown. Photos that are called as the planned ones would else be told to be
+/// kilometres off, as if anybody flew so.
+fn is_near(mission: &Mission, flown_at: &[DVec2]) -> Result<(), Fault> {
+    let mut nearest: Option<f64> = None;
+    for place in flown_at {
+        let kilometres = mission.to_nearest_stop(*place);
+        if kilometres.is_none_or(|kilometres| kilometres <= Mission::FARTHEST) {
+            return Ok(());
+        }
+        nearest = nearest.into_iter().chain(kilometres).reduce(f64::min);
+    }
+    let Some(nearest) = nearest else {
+        return Ok(());
+    };
+    let what = format!(
+        "the mission lies {} from the flight",
+        kilometres_in_words(nearest)
+    );
+    let remedy = "look whether it is another pit's, or whether the coordinates of one of both are swapped or of another system (world.crs)";
+    Err(Fault::new(what, remedy))
+}
+
+/// Whether the mission can be flown from a place where somebody says that the drone took off.
+fn takes_off_near(mission: &Mission, place: DVec2) -> Result<(), Fault> {
+    let kilometres = mission.to_nearest_stop(place);
+    let Some(kilometres) = kilometres.filter(|kilometres| *kilometres > Mission::FARTHEST) else {
+        return Ok(());
+    };
+    let what = format!(
+        "its nearest stop lies {} from the take-off that is given",
+        kilometres_in_words(kilometres)
+    );
+    let remedy = "give the place of the take-off in the flight's coordinates, x first";
+    Err(Fault::new(what, remedy))
+}
+
+/// A take-off that is typed is off that of the file by less, kilometres, where both mean one place.
+const ONE_PLACE: f64 = 0.01;
+
+/// That the mission says another take-off than the one that is given, in a sentence: heights count from there.
+fn takes_off_elsewhere(mission: &Mission, place: DVec2) -> Option<String> {
+    let kilometres = mission.to_take_off(place)?;
+    (kilometres > ONE_PLACE).then(|| {
+        format!(
+            "the take-off that is given is taken; its own lies {} from it: look from which of both the drone took off",
+            kilometres_in_words(kilometres)
+        )
+    })
+}
+
+fn kilometres_in_words(kilometres: f64) -> String {
+    match kilometres {
+        ..1.0 => format!("{:.0} m", 1000.0 * kilometres),
+        ..10.0 => format!("{kilometres:.1} km"),
+        _ => format!("{kilometres:.0} km"),
+    }
+}
+
+/// Photos that are off their plans by more, metres, are so by no receiver.
+const PLACE_OFF: f64 = 50.0;
+
+/// That photos were taken far from their plans though they are called like them, in a sentence.
+fn places_off(flown: &Flown, unit: LengthUnit) -> Option<String> {
+    let residuals = flown.residuals.iter().flatten();
+    let off = residuals.map(|own| own.offset.truncate().length() * unit.metres());
+    let [middle, _] = median_with_deviation(&mut off.collect::<Vec<f64>>())?;
+    (middle > PLACE_OFF).then(|| {
+        format!(
+            "photos are {middle:.0} m off their plans (the median): look whether this flight is of that mission, and whether both are \
+             of one coordinate system"
+        )
     })
 }
 
@@ -145,10 +234,35 @@ fn heights_off(
 
 #[cfg(test)]
 mod tests {
-    use fragscale_core::plan::Residual;
+    use fragscale_core::plan::{Height, Residual, Stop, TakeOff};
 
     use super::*;
     use crate::camera::Pose;
+
+    /// Three photos that are so far off their plans.
+    fn off_by(offset: DVec3) -> Flown {
+        let residual = Residual {
+            photo: 0,
+            offset,
+            tilt: 0.0,
+            pan: 0.0,
+            turn: 0.0,
+            shared: None,
+        };
+        Flown {
+            residuals: vec![Some(residual); 3],
+            unplanned: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn photos_that_are_called_like_others_elsewhere_are_said() {
+        let of = |x, unit| places_off(&off_by(DVec3::new(x, 0.0, 900.0)), unit);
+        assert_eq!(of(9.0, LengthUnit::Metre), None);
+        let said = of(-1500.0, LengthUnit::Metre).unwrap();
+        assert!(said.contains("1500 m off"), "{said}");
+        assert_eq!(of(-100.0, LengthUnit::Foot), None);
+    }
 
     /// What is said of three photos over a place east of 300 km that are so much higher than planned.
     fn said(east: f64, higher: f64) -> String {
@@ -157,20 +271,60 @@ mod tests {
             name: String::new(),
             pose: Pose::from_tilt_pan(center, [90.0, 0.0]),
         };
-        let residual = Residual {
-            photo: 0,
-            offset: DVec3::new(0.0, 0.0, higher),
-            tilt: 0.0,
-            pan: 0.0,
-            turn: 0.0,
-            shared: None,
-        };
-        let flown = Flown {
-            residuals: vec![Some(residual); 3],
-            unplanned: Vec::new(),
-        };
+        let flown = off_by(DVec3::new(0.0, 0.0, higher));
         let crs = Crs::understand("EPSG:32753").unwrap();
         heights_off(&[planned], &flown, &crs, LengthUnit::Metre).unwrap()
+    }
+
+    /// A degree of longitude at 60 N is 55.6 km on a sphere with a radius of 6371 km, and one of latitude 111.2 km.
+    fn mission() -> Mission {
+        Mission {
+            name: "bench".to_owned(),
+            take_off: Some(TakeOff {
+                latitude: 60.0,
+                longitude: 8.0,
+                elevation: None,
+            }),
+            stops: vec![Stop {
+                latitude: 60.0,
+                longitude: 8.0,
+                height: Height::above_take_off(30.0),
+                heading: None,
+                gimbal_pitch: None,
+                settle: 0.0,
+                photo: None,
+            }],
+            ..Mission::default()
+        }
+    }
+
+    /// Of a flight the photo that is nearest counts; of one without a place, and of a mission without a stop, nothing is said.
+    #[test]
+    fn a_mission_of_another_pit_is_refused() {
+        let at = DVec2::new;
+        let near = [at(61.0, 8.0), at(60.01, 8.0)];
+        assert_eq!(is_near(&mission(), &near), Ok(()));
+        assert_eq!(is_near(&mission(), &[]), Ok(()));
+        assert_eq!(is_near(&Mission::default(), &near), Ok(()));
+        let far = is_near(&mission(), &[at(61.0, 8.0), at(60.0, 8.1)]).unwrap_err();
+        assert_eq!(far.what, "the mission lies 5.6 km from the flight");
+        let far = is_near(&mission(), &[at(61.0, 8.0)]).unwrap_err();
+        assert_eq!(far.what, "the mission lies 111 km from the flight");
+    }
+
+    #[test]
+    fn a_take_off_elsewhere_is_said_or_refused() {
+        let at = |north: f64| DVec2::new(60.0 + north / 111_195.0, 8.0);
+        for (north, said) in [(5.0, None), (300.0, Some("lies 300 m from it"))] {
+            assert_eq!(takes_off_near(&mission(), at(north)), Ok(()));
+            let told = takes_off_elsewhere(&mission(), at(north));
+            match said {
+                None => assert_eq!(told, None),
+                Some(said) => assert!(told.as_ref().unwrap().contains(said), "{told:?}"),
+            }
+        }
+        let far = takes_off_near(&mission(), at(7300.0)).unwrap_err();
+        assert!(far.what.contains("7.3 km from the take-off"), "{far}");
     }
 
     /// In South Australia the geoid crosses the ellipsoid: where both are nearly one, a take-off that is 5 m off is not laid to them.

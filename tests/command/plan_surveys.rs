@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 
 use super::plan::{plane, planned};
-use crate::common::{fragscale, shared_data, stdout_of};
+use crate::common::{error_of, fragscale, shared_data, stdout_of};
 
 fn info(path: &str) -> Value {
     serde_json::from_str(&stdout_of(&["info", path, "--format", "json"])).unwrap()
@@ -336,4 +336,74 @@ fn an_overlap_that_is_advised_is_enough() {
             "{advised}: {again}"
         );
     }
+}
+
+/// Numbers of photos that lie kilometres from their plans are no comparison, whatever they are called.
+#[test]
+fn a_mission_of_another_pit_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let flight = plane(folder.path());
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (mission, far) = (path("m.geojson"), path("far.geojson"));
+    assert_eq!(
+        planned(&flight, &["--mission", &mission]).status.code(),
+        Some(0)
+    );
+    // A tenth of a degree to the east: 7.3 km.
+    let text = fs::read_to_string(&mission).unwrap();
+    fs::write(&far, text.replace("[8.3", "[8.4")).unwrap();
+    let take_off = |place| ["--take-off", place];
+    for more in [&[] as &[&str], &take_off("450020,5400020")] {
+        let arguments = [&["flown", &flight, "--mission", &far][..], more].concat();
+        let error = error_of(&arguments);
+        assert!(
+            error.contains("far.geojson: the mission lies 7.")
+                && error.contains(" km from the flight"),
+            "{error}"
+        );
+    }
+    let own = ["flown", &flight, "--mission", &mission];
+    let error = error_of(&[&own[..], &take_off("430000,5400020")].concat());
+    assert!(
+        error.contains("nearest stop lies 20 km from the take-off that is given"),
+        "{error}"
+    );
+    // 80 m to the east and to the north of the file's own.
+    let said = |place| {
+        let output = fragscale(&[&own[..], &take_off(place)].concat());
+        let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{notes}");
+        notes
+    };
+    let elsewhere = "m.geojson: the take-off that is given is taken; its own lies 113 m from it";
+    let notes = said("450100,5400100");
+    assert!(notes.contains(elsewhere), "{notes}");
+    let notes = said("450020,5400020");
+    assert!(!notes.contains("that is given is taken"), "{notes}");
+}
+
+/// Which file cannot say it is told where there are several, and a sentence that is true of several stands once.
+#[test]
+fn notes_on_several_missions_name_their_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let flight = plane(folder.path());
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (plan, csv) = (path("a.plan"), path("a.csv"));
+    let notes = |missions: &[&str]| {
+        let output = planned(&flight, missions);
+        let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{notes}");
+        notes
+    };
+    let both = notes(&["--mission", &plan, "--mission", &csv]);
+    let takes_off = format!("{plan}, {csv}: the drone takes off at ");
+    assert!(both.contains(&takes_off), "{both}");
+    let radio = "the file does not say what the drone does where the radio is lost";
+    let lines = both.lines().filter(|line| line.contains(radio));
+    assert!(lines.clone().count() > 0, "{both}");
+    for line in lines {
+        assert!(line.contains(&csv), "{line}");
+    }
+    let one = notes(&["--mission", &csv, "--force"]);
+    assert!(one.contains(&format!("warning: {radio}")), "{one}");
 }

@@ -13,6 +13,7 @@ use crate::cli::of_photos::length::Length;
 use crate::cli::on_surface::places::place;
 use crate::cli::outputs::AnswerArguments;
 use crate::cli::planning::flying::{FlyingArguments, percent, positive};
+use crate::cli::planning::notes_of_files::notes_of_files;
 use crate::cli::planning::pixel_scale::PixelScale;
 use crate::cli::planning::sheet::SheetArguments;
 use crate::cli::planning::survey::SurveyArguments;
@@ -293,13 +294,14 @@ pub(in crate::cli) fn plan(
     warnings.extend(exports::plan_warnings(&report));
     warnings.extend(parted);
     if !missions.is_empty() {
+        let mut notes = Vec::new();
         for path in &arguments.mission {
-            for note in outputs.write_missions(&missions, path)? {
-                if !warnings.contains(&note) {
-                    warnings.push(note);
-                }
-            }
+            let mut of_file = outputs.write_missions(&missions, path)?;
+            // What is said of the plan is said.
+            of_file.retain(|note| !warnings.contains(note));
+            notes.push((path.as_path(), of_file));
         }
+        warnings.extend(notes_of_files(notes));
     }
     let sheet = FlightSheet {
         report: &report,

@@ -8,10 +8,6 @@ use crate::cli::planning::flying::speed;
 use crate::fault::Fault;
 use crate::plan::{Above, Height, Mission, TakeOff};
 
-/// The farthest that the nearest stop may lie from a take-off that is typed, kilometres: nobody sees a drone there, which its pilot
-/// has to in most countries, and photos of one pile are taken within some hundred metres. Who typed it took one number for another.
-const FARTHEST: f64 = 2.0;
-
 #[derive(Debug, Args)]
 pub(super) struct StatedArguments {
     /// Metres a second between stops, where the file does not say it, or instead of what it says.
@@ -157,7 +153,7 @@ fn take_off_at(place: DVec2) -> TakeOff {
 /// Why nobody takes off there, and what was meant, if that can be told.
 fn too_far(mission: &Mission, place: DVec2) -> Option<Fault> {
     let kilometres = mission.to_nearest_stop(place)?;
-    if kilometres <= FARTHEST {
+    if kilometres <= Mission::FARTHEST {
         return None;
     }
     let is_near = |place: DVec2| {
@@ -165,7 +161,7 @@ fn too_far(mission: &Mission, place: DVec2) -> Option<Fault> {
         is_latitude
             && mission
                 .to_nearest_stop(place)
-                .is_some_and(|to| to <= FARTHEST)
+                .is_some_and(|to| to <= Mission::FARTHEST)
     };
     let ways = [
         ("swapped", DVec2::new(place.y, place.x)),

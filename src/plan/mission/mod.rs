@@ -4,6 +4,7 @@
 //! ```text
 //! beyond     what of its flight lies beyond the surface
 //! by_itself  what the drone does behind the last stop, and where the radio is lost
+//! near       how far from places on the Earth it is
 //! told       the ways of a plan as missions, in degrees and metres above take-off
 //! flown      planned against flown
 //! paired     which photo is which planned one
@@ -12,6 +13,7 @@
 mod beyond;
 mod by_itself;
 mod flown;
+mod near;
 mod paired;
 mod told;
 
@@ -22,8 +24,6 @@ pub use paired::{PlannedPose, Taken};
 #[cfg(test)]
 pub(super) use told::true_heading;
 pub use told::{Told, is_over_ground, missions};
-
-use glam::{DVec2, DVec3};
 
 use crate::fault::Fault;
 use crate::geodesy::geoid_height;
@@ -204,21 +204,6 @@ const LONGEST_WAIT: f64 = 86_400.0;
 const FASTEST: f64 = 300.0;
 
 impl Mission {
-    /// From a place, latitude and longitude in degrees, to the nearest stop, kilometres on a sphere of the Earth's size; `None`
-    /// where there is no stop.
-    pub fn to_nearest_stop(&self, place: DVec2) -> Option<f64> {
-        const RADIUS: f64 = 6371.0;
-        let direction = |latitude: f64, longitude: f64| {
-            let [(sin, cos), (east, north)] =
-                [latitude, longitude].map(|angle| angle.to_radians().sin_cos());
-            DVec3::new(cos * north, cos * east, sin)
-        };
-        let from = direction(place.x, place.y);
-        let stops = self.stops.iter();
-        let angles = stops.map(|stop| direction(stop.latitude, stop.longitude).angle_between(from));
-        Some(RADIUS * angles.reduce(f64::min)?)
-    }
-
     /// Whether a drone could be told this: places on the Earth, finite heights and angles, a speed above
     /// zero. One without stops is none to be flown, but may have been read.
     ///
@@ -387,21 +372,6 @@ mod tests {
             stops: vec![stop.clone(), stop],
             ..Mission::default()
         }
-    }
-
-    /// A degree of a great circle is 111.1949 km on a sphere with a radius of 6371 km.
-    #[test]
-    fn the_nearest_stop_counts() {
-        let mut mission = mission();
-        mission.stops[1].latitude = 53.0;
-        let to = |latitude, longitude| {
-            let place = DVec2::new(latitude, longitude);
-            mission.to_nearest_stop(place).unwrap()
-        };
-        assert!((to(49.0, 7.0) - 111.1949).abs() < 1e-3);
-        assert!((to(54.0, 7.0) - 111.1949).abs() < 1e-3);
-        assert!(to(50.0, 7.0) < 1e-6);
-        assert_eq!(Mission::default().to_nearest_stop(DVec2::ZERO), None);
     }
 
     #[test]
