@@ -44,8 +44,9 @@ pub use analysis::{
 };
 pub use anova::{Anova, Repeatability, Variation, repeatability};
 pub use comparison::{
-    Comparison, ComparisonOptions, CurveNorm, Improvement, MeanPoint, MethodComparison,
-    MethodCurve, PERCENT_ERROR, PercentError, PercentileShift, SCALE_WARNING, Shift, Span, compare,
+    Comparison, ComparisonOptions, CurveNorm, Improvement, MeanPoint, MeasuredNorm,
+    MethodComparison, MethodCurve, PERCENT_ERROR, PercentError, PercentileShift, SCALE_WARNING,
+    Shift, Span, compare,
 };
 pub use distribution::{PERCENTILES, SizeDistribution};
 pub use distribution_set::{DistributionSet, LabelledDistribution, Labels};

@@ -319,6 +319,32 @@ fn sizes_beyond_what_was_measured_are_named() {
     assert!(!of_rosin_rammler.contains("xmax"), "{of_rosin_rammler}");
 }
 
+/// Two sieves that everything passed say nothing: they neither make the fit look better nor are they passed over without a word.
+#[test]
+fn what_says_nothing_does_not_make_a_fit_look_better() {
+    let below = "size_mm,percent_passing\n6.3,38\n12.5,60\n25,90\n";
+    let said = |text: &str, format: &str| {
+        let folder = table(text);
+        let path = folder.path().join("t.csv");
+        let path = path.to_str().expect("a UTF-8 path");
+        let model = "ggs";
+        stdout_of(&["psd", "fit", path, "--model", model, "--format", format])
+    };
+    let fit = |text: &str| -> Value { serde_json::from_str(&said(text, "json")).expect("JSON") };
+    let all = format!("{below}100,100\n250,100\n");
+    let (few, many) = (fit(below), fit(&all));
+    assert_eq!(many["telling_points"], 3);
+    for name in ["rmse", "r_squared"] {
+        let [one, other] = [&few, &many].map(|fit| fit[name].as_f64().expect("a number"));
+        assert!(near(one, other, 1e-6), "{name} {one} {other}");
+    }
+    let told =
+        "RMSE and R squared are of the 3 points that say something of the parameters, not of 2 ";
+    assert!(said(&all, "table").contains(told));
+    assert!(!said(below, "table").contains("RMSE and R squared are of"));
+    assert!(said(&all, "csv").contains(",telling_points,,3,,,\n"));
+}
+
 /// Points that rise more slowly at their end than Swebrec without a largest size does.
 #[test]
 fn a_largest_size_that_the_data_do_not_say_is_no_number_in_table_and_csv() {

@@ -127,6 +127,18 @@ fn beyond(points: &[[f64; 2]], given: &[(String, f64)], unit: LengthUnit) -> Str
     }
 }
 
+/// Of how many points RMSE and R squared are, where that is not all of them.
+fn telling(fit: &Fit) -> String {
+    match fit.silent_points() {
+        0 => String::new(),
+        silent => format!(
+            "RMSE and R squared are of the {} points that say something of the parameters, not of {silent} at which the function says 100 % \
+             whatever they are\n",
+            fit.telling_points
+        ),
+    }
+}
+
 fn table(report: &FitReport, curve: &FittedCurve) -> String {
     let FittedCurve { fit, points, .. } = curve;
     let mut text = String::new();
@@ -169,11 +181,12 @@ fn table(report: &FitReport, curve: &FittedCurve) -> String {
     }
     text += &aligned(&parameters);
     text += &format!(
-        "residual sum of squares {}, RMSE {} percentage points, R squared {}, {} degrees of freedom\n\n",
+        "residual sum of squares {}, RMSE {} percentage points, R squared {}, {} degrees of freedom\n{}\n",
         significant(fit.residual_sum_of_squares, 6),
         significant(fit.rmse, 3),
         significant(fit.r_squared, 6),
         fit.degrees_of_freedom,
+        telling(fit),
     );
     // A fit knows its own points, neither a method's errors nor what it does not see.
     let confidence = format!("fit's {} % from", trimmed(100.0 * report.level, 6));
@@ -286,6 +299,7 @@ pub fn fit_csv(report: &FitReport) -> Result<String, csv::Error> {
         )?;
         line("rmse", "percentage points", fit.rmse, none)?;
         line("r_squared", "", fit.r_squared, none)?;
+        line("telling_points", "", fit.telling_points as f64, none)?;
         line(
             "degrees_of_freedom",
             "",
@@ -336,6 +350,7 @@ struct JsonFit<'a> {
     residual_sum_of_squares: f64,
     r_squared: f64,
     rmse: f64,
+    telling_points: usize,
     degrees_of_freedom: usize,
     percentiles: Named<f64>,
     level: f64,
@@ -397,6 +412,7 @@ fn json<'a>(report: &FitReport, curve: &'a FittedCurve) -> JsonFit<'a> {
         residual_sum_of_squares: fit.residual_sum_of_squares,
         r_squared: fit.r_squared,
         rmse: fit.rmse,
+        telling_points: fit.telling_points,
         degrees_of_freedom: fit.degrees_of_freedom,
         percentiles: Named(
             percentiles

@@ -44,6 +44,40 @@ impl Span {
     }
 }
 
+/// A distance over the part of the span where both were measured: beyond it functions are compared that nobody measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredNorm {
+    /// The smallest size of the span at which both were measured, in the set's unit.
+    pub from: f64,
+    /// The largest.
+    pub to: f64,
+    /// Which share of the span that is, on the logarithmic axis.
+    pub share: f64,
+    /// The distance between them.
+    pub norm: CurveNorm,
+}
+
+impl MeasuredNorm {
+    /// Of `curve` from `reference`, which were measured at sizes between these; `None` where they share none of the span.
+    pub(super) fn between(
+        curve: &Curve,
+        reference: &Curve,
+        span: Span,
+        measured: [[f64; 2]; 2],
+    ) -> Option<Self> {
+        let from = measured
+            .iter()
+            .fold(span.from, |from, [low, _]| from.max(*low));
+        let to = measured.iter().fold(span.to, |to, [_, high]| to.min(*high));
+        (from < to).then(|| Self {
+            from,
+            to,
+            share: (to / from).ln() / (span.to / span.from).ln(),
+            norm: CurveNorm::between(curve, reference, Span { from, to, ..span }),
+        })
+    }
+}
+
 /// 2-norm of the difference of two functions over a span.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveNorm {
@@ -234,6 +268,29 @@ mod tests {
         );
         let mean_square = (below + above) / 100.0_f64.ln();
         near(norm.rms_difference, 100.0 * mean_square.sqrt(), 1e-10);
+    }
+
+    /// Below 50 the one power law is twice the other: over sizes from 10 to 40, at which both were measured, the distance is as large as
+    /// the reference, 100 %. The span goes from 1 to 100.
+    #[test]
+    fn where_both_were_measured_alone() {
+        let power = |xmax| {
+            let curve = GatesGaudinSchuhmann::new(xmax, 1.0).expect("a curve");
+            Curve::GatesGaudinSchuhmann(curve)
+        };
+        let (curve, reference) = (power(50.0), power(100.0));
+        let span = Span::of(&reference).expect("a span");
+        let measured = |ranges| MeasuredNorm::between(&curve, &reference, span, ranges);
+        let found = measured([[10.0, 90.0], [5.0, 40.0]]).expect("a part");
+        assert_eq!((found.from, found.to), (10.0, 40.0));
+        near(found.share, 4.0_f64.ln() / 100.0_f64.ln(), 1e-12);
+        near(found.norm.relative_percent, 100.0, 1e-9);
+        // Measured further than the span goes, it is all of it.
+        let whole = measured([[0.1, 200.0], [0.5, 300.0]]).expect("all");
+        assert_eq!((whole.from, whole.to), (span.from, span.to));
+        near(whole.share, 1.0, 1e-12);
+        assert_eq!(whole.norm, CurveNorm::between(&curve, &reference, span));
+        assert_eq!(measured([[10.0, 20.0], [20.0, 40.0]]), None);
     }
 
     /// Rosin-Rammler has no topsize: the span ends at its P99.

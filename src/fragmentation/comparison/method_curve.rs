@@ -87,7 +87,7 @@ impl MethodCurve {
 
     /// The points of which every trial says something: where trials begin or end on the way, the mean
     /// of those left may jump.
-    pub fn known_to_all(&self) -> impl Iterator<Item = &MeanPoint> {
+    pub fn known_to_all(&self) -> impl DoubleEndedIterator<Item = &MeanPoint> {
         let known = |point: &&MeanPoint| point.trials == self.trials.len();
         self.points.iter().filter(known)
     }
@@ -107,6 +107,12 @@ impl MethodCurve {
     /// The smallest and the largest measured size.
     pub(super) fn range(&self) -> Option<[f64; 2]> {
         Some([self.points.first()?.size, self.points.last()?.size])
+    }
+
+    /// The smallest and the largest size at which every trial is known.
+    pub(super) fn range_known_to_all(&self) -> Option<[f64; 2]> {
+        let sizes = || self.known_to_all().map(|point| point.size);
+        Some([sizes().next()?, sizes().next_back()?])
     }
 
     /// The sizes that not every trial knows.

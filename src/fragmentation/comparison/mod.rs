@@ -5,20 +5,23 @@
 //! residuals      percent error of the passing at each size
 //! curve_norm     distance of two fitted functions over the whole curve
 //! percentiles    shifts of the Pxx and the envelope of the sizes
+//! notes          what to know before trusting it
 //! ```
 
 mod curve_norm;
 mod method_curve;
+mod notes;
 mod percentiles;
 mod residuals;
 
 pub(crate) use method_curve::{MeasuredBy, whole_mean_of};
 
-pub use curve_norm::{CurveNorm, Improvement, Span};
+pub use curve_norm::{CurveNorm, Improvement, MeasuredNorm, Span};
 pub use method_curve::{MeanPoint, MethodCurve};
 pub use percentiles::{PercentileShift, SCALE_WARNING, Shift};
 pub use residuals::{PERCENT_ERROR, PercentError};
 
+use self::notes::{not_as_fitted, not_measured, notes_of_reference, partly_known, partly_measured};
 use super::distribution::as_typed;
 use super::{DistributionSet, Model, PERCENTILES, SizeDistribution};
 use crate::fault::Fault;
@@ -96,6 +99,8 @@ pub struct MethodComparison {
     pub residuals: Vec<PercentError>,
     /// Distance of its fitted function from the reference's.
     pub norm: CurveNorm,
+    /// The same where both were measured; `None` where that is nowhere in the span.
+    pub measured_norm: Option<MeasuredNorm>,
     /// Its Pxx against the reference's.
     pub shift: Shift,
     /// What to know before trusting it, one sentence each.
@@ -147,7 +152,7 @@ pub(crate) fn compare_known(
         .iter()
         .map(|(method, trials)| {
             let curve = MethodCurve::new(method, trials, options.model, measured(method))?;
-            against(&reference, span, (curve, trials), options)
+            against(&reference, (span, set.unit), (curve, trials), options)
         })
         .collect::<Result<Vec<_>, Fault>>()?;
     let mut improvements = Vec::new();
@@ -224,7 +229,7 @@ fn methods_of<'a>(
 /// A method (its curve and trials) held against the reference.
 fn against(
     reference: &MethodCurve,
-    span: Span,
+    (span, unit): (Span, LengthUnit),
     (curve, trials): (MethodCurve, &Trials<'_>),
     options: &ComparisonOptions,
 ) -> Result<MethodComparison, Fault> {
@@ -249,8 +254,17 @@ fn against(
         options.envelope_percent,
         measured_by_both(&curve, reference),
     )?;
+    let functions = [&curve, reference].map(|of| &of.fit.curve);
+    let measured_norm = [&curve, reference].map(MethodCurve::range_known_to_all);
+    let measured_norm = match measured_norm {
+        [Some(own), Some(other)] => {
+            MeasuredNorm::between(functions[0], functions[1], span, [own, other])
+        }
+        _ => None,
+    };
     let mut notes = Vec::new();
     notes.extend(partly_known(&curve));
+    notes.extend(partly_measured(&curve.method, measured_norm, unit));
     notes.extend(not_measured(&curve, &shift));
     notes.extend(not_as_fitted(&curve, reference, &shift));
     if shift.looks_like_scale {
@@ -265,7 +279,8 @@ fn against(
     let residual = |point| PercentError::new(point, &distributions, options.envelope_percent);
     Ok(MethodComparison {
         residuals: reference.points.iter().map(residual).collect(),
-        norm: CurveNorm::between(&curve.fit.curve, &reference.fit.curve, span),
+        norm: CurveNorm::between(functions[0], functions[1], span),
+        measured_norm,
         shift,
         notes,
         curve,
@@ -282,84 +297,6 @@ fn measured_by_both(curve: &MethodCurve, reference: &MethodCurve) -> [f64; 2] {
         )
     });
     [own[0].max(other[0]), own[1].min(other[1])]
-}
-
-/// Which percentiles are the functions' word.
-fn not_measured(curve: &MethodCurve, shift: &Shift) -> Option<String> {
-    let beyond = shift
-        .percentiles
-        .iter()
-        .filter(|percentile| !percentile.measured);
-    let names: Vec<String> = beyond.map(|of| format!("P{}", of.percent)).collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "'{}': at {} not both were measured; their shifts are of the functions alone, and do not count in the mean shift where \
-             others do",
-            curve.method,
-            names.join(", ")
-        )
-    })
-}
-
-/// By how many percent a shift of the fitted functions may be off that of what was measured without a word: as far as a good fit is.
-const WELL_FITTED: f64 = 5.0;
-
-/// Where the fitted functions say another shift than what was measured.
-fn not_as_fitted(curve: &MethodCurve, reference: &MethodCurve, shift: &Shift) -> Option<String> {
-    let off = shift.percentiles.iter().filter_map(|of| {
-        let size = curve.measured_size_at(of.percent)?;
-        let measured = 100.0 * (size / reference.measured_size_at(of.percent)? - 1.0);
-        ((measured - of.shift_percent).abs() > WELL_FITTED).then(|| {
-            format!(
-                "P{} {measured:+.1} %, not {:+.1}",
-                of.percent, of.shift_percent
-            )
-        })
-    });
-    let off: Vec<String> = off.collect();
-    (!off.is_empty()).then(|| {
-        format!(
-            "'{}': the shifts are of the fitted functions, which leave what was measured; as measured {}",
-            curve.method,
-            off.join("; ")
-        )
-    })
-}
-
-/// What was left out of a method's fit.
-fn partly_known(curve: &MethodCurve) -> Option<String> {
-    let sizes: Vec<String> = curve.partly_known().map(as_typed).collect();
-    (!sizes.is_empty()).then(|| {
-        format!(
-            "'{}': not every trial is known at the sizes {}; they do not count in its fit",
-            curve.method,
-            sizes.join(", ")
-        )
-    })
-}
-
-fn notes_of_reference(reference: &MethodCurve, span: Span, unit: LengthUnit) -> Vec<String> {
-    let mut notes: Vec<String> = partly_known(reference).into_iter().collect();
-    if let Some([from, to]) = reference.range()
-        && (span.from < from || span.to > to)
-    {
-        notes.push(format!(
-            "the norms go from {} to {} {unit}, beyond the sizes {} to {} {unit} that '{}' was \
-             measured at: there the fitted functions are compared where nothing was measured",
-            rounded(span.from),
-            rounded(span.to),
-            as_typed(from),
-            as_typed(to),
-            reference.method
-        ));
-    }
-    notes
-}
-
-/// A size as a sentence says it: three digits.
-fn rounded(size: f64) -> String {
-    let digits = (2.0 - size.log10().floor()).clamp(0.0, 9.0);
-    format!("{size:.*}", digits as usize)
 }
 
 #[cfg(test)]
@@ -487,6 +424,17 @@ mod tests {
         let gained = 1.0 - found.methods[0].norm.rms_difference / norm.rms_difference;
         assert!((improvement.percent.expect("a percentage") - 100.0 * gained).abs() < 1e-9);
         assert_eq!(found.improvements.len(), 2);
+        // The sieve from 2 to 90 % of 150 mm, the object of 162 mm.
+        let measured = found.methods[1].measured_norm.expect("measured");
+        assert!((measured.from - 3.24).abs() < 1e-9 && (measured.to - 135.0).abs() < 1e-9);
+        assert!(
+            found.methods[1]
+                .notes
+                .iter()
+                .any(|note| note.contains("both were measured from 3.24 to 135 mm, 35 % of")),
+            "{:?}",
+            found.methods[1].notes
+        );
         assert!(
             found.notes[0].contains("beyond the sizes 3 to 135 mm"),
             "{:?}",

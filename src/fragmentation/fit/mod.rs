@@ -15,6 +15,7 @@
 //! family          each function in coordinates of its own: swebrec, rosin_rammler,
 //!                 gates_gaudin_schuhmann
 //! search          Levenberg-Marquardt within bounds, from many starts
+//! quality         how far the points that say something lie from the function
 //! uncertainty     covariance, Student's t
 //! repeats         the same of a mean of photos, by leaving one after another out
 //! notes           what to know before trusting a fit
@@ -25,6 +26,7 @@ mod family;
 mod gates_gaudin_schuhmann;
 mod notes;
 mod points;
+mod quality;
 mod repeats;
 mod rosin_rammler;
 mod search;
@@ -35,6 +37,7 @@ mod uncertainty;
 
 use family::Family;
 use points::Points;
+use quality::Quality;
 use repeats::Repeats;
 use uncertainty::Uncertainty;
 
@@ -90,11 +93,14 @@ pub struct Fit {
     pub residuals: Vec<f64>,
     /// Sum of the squared residuals, each times its weight as given; percentage points squared.
     pub residual_sum_of_squares: f64,
-    /// Root of the (weighted) mean squared residual: sqrt(residual sum of squares / sum of weights),
-    /// which without weights is the number of points; percentage points.
+    /// Root of the (weighted) mean squared residual of the points that say something of the parameters (`telling_points`); percentage
+    /// points. What lies at 100 % by itself would make every fit look better that has more of it.
     pub rmse: f64,
-    /// 1 - residual sum of squares / (weighted) sum of squares about the (weighted) mean.
+    /// 1 - residual sum of squares / (weighted) sum of squares about the (weighted) mean, of the same points; of all where one percent
+    /// passes all of these.
     pub r_squared: f64,
+    /// How many points (with a weight above 0) say something of the parameters: not those that do not count in `degrees_of_freedom`.
+    pub telling_points: usize,
     /// Points (with a weight above 0) less fitted parameters, 0 where there are fewer; a parameter that
     /// ended at its bound was fitted, one that was given was not. Points do not count that everything
     /// passed and of which the function says so whatever its parameters are: those at and above xmax.
@@ -105,8 +111,6 @@ pub struct Fit {
     pub not_determined: Vec<NotDetermined>,
     /// The points [size, percent passing] that it was fitted to, sizes ascending.
     fitted_to: Vec<[f64; 2]>,
-    /// How many of them say nothing of the parameters.
-    certain: usize,
     known: Known,
 }
 
@@ -133,6 +137,11 @@ pub struct Percentile {
 }
 
 impl Fit {
+    /// How many of the points that it was fitted to say nothing of the parameters.
+    pub fn silent_points(&self) -> usize {
+        self.fitted_to.len().saturating_sub(self.telling_points)
+    }
+
     /// Whether the value of the parameter of this name means anything.
     pub fn determines(&self, parameter: &str) -> bool {
         let mut unknown = self.not_determined.iter().flat_map(|of| &of.parameters);
@@ -219,7 +228,7 @@ impl Fit {
     pub(crate) fn of_fewer_points(mut self, points: usize, own: usize) -> Self {
         let fewer = points.saturating_sub(own);
         // Those of them that say nothing did not count before; they are as many as among all.
-        let certain = self.certain * fewer / points.max(1);
+        let certain = self.silent_points() * fewer / points.max(1);
         let left = self
             .degrees_of_freedom
             .saturating_sub(fewer.saturating_sub(certain));
@@ -296,8 +305,8 @@ pub fn fit(
     let names = model.parameter_names();
     let fitted = names.len() - usize::from(options.xmax.is_some());
     let free = notes::free(&family, best);
-    let certain = uncertainty::certain(&family, &points, &best.at, &free);
-    let telling = points.points.len() - certain;
+    let tells = uncertainty::telling(&family, &points, &best.at, &free);
+    let telling = tells.iter().filter(|tells| **tells).count();
     let degrees_of_freedom = telling.saturating_sub(fitted);
     let uncertainty = Uncertainty::new(
         family,
@@ -329,19 +338,16 @@ pub fn fit(
     };
     let used = measured.iter().enumerate();
     let used = used.filter(|(index, _)| weight(*index) > 0.0);
-    let fitted_to = used.map(|(_, point)| *point).collect();
-    let total: f64 = (0..measured.len()).map(weight).sum();
-    let weighted = |value: &dyn Fn(usize, &[f64; 2]) -> f64| -> f64 {
-        let terms = measured.iter().enumerate();
-        terms.map(|(i, point)| weight(i) * value(i, point)).sum()
-    };
+    let fitted_to: Vec<[f64; 2]> = used.map(|(_, point)| *point).collect();
     let residuals: Vec<f64> = measured
         .iter()
         .map(|&[size, percent]| percent - curve.percent_passing(size))
         .collect();
-    let sum = weighted(&|index, _| residuals[index] * residuals[index]);
-    let mean = weighted(&|_, point| point[1]) / total;
-    let about_mean = weighted(&|_, point| (point[1] - mean) * (point[1] - mean));
+    let squares = residuals.iter().enumerate();
+    let sum: f64 = squares
+        .map(|(i, residual)| weight(i) * residual * residual)
+        .sum();
+    let quality = Quality::new(&curve, &points, &tells);
     let others: Vec<_> = curves.iter().skip(1).map(|(o, c)| (o.sum, *c)).collect();
     let told = notes::Told {
         family: &family,
@@ -362,13 +368,13 @@ pub fn fit(
         parameters,
         residuals,
         residual_sum_of_squares: sum,
-        rmse: (sum / total).sqrt(),
-        r_squared: 1.0 - sum / about_mean,
+        rmse: quality.rmse,
+        r_squared: quality.r_squared,
+        telling_points: telling,
         degrees_of_freedom,
         notes,
         not_determined,
         fitted_to,
-        certain,
         known: uncertainty.map_or(Known::Nothing, |of| Known::Scatter(Box::new(of))),
     })
 }

@@ -360,6 +360,9 @@ fn what_everything_passed_does_not_count() {
     let any = fitted(&points, Model::GatesGaudinSchuhmann, &plain).expect("a fit");
     assert_eq!(any.degrees_of_freedom, 0);
     assert_eq!(any.percentile(50.0, 0.95).band, None);
+    // One point alone has no spread that could be explained: R squared is of all.
+    assert_eq!(any.telling_points, 1);
+    assert!(any.r_squared > 1.0 - 1e-6, "{any:?}");
     assert!(
         any.notes[0].starts_with("more parameters than points"),
         "{:?}",
@@ -406,6 +409,15 @@ fn what_everything_passed_makes_nothing_surer() {
         for points in [below, &points] {
             let fit = fitted(points, model, &FitOptions::default()).expect("a fit");
             assert_eq!(fit.degrees_of_freedom, left, "{fit:?}");
+            // Nor does it make the fit look better.
+            let mean = below.iter().map(|point| point[1]).sum::<f64>() / below.len() as f64;
+            let about = below.iter().map(|point| (point[1] - mean).powi(2));
+            let unexplained = fit.residual_sum_of_squares / about.sum::<f64>();
+            assert!(near(1.0 - fit.r_squared, unexplained, 1e-6), "{fit:?}");
+            let rmse = (fit.residual_sum_of_squares / below.len() as f64).sqrt();
+            assert!(near(fit.rmse, rmse, 1e-6), "{fit:?}");
+            assert_eq!(fit.telling_points, below.len());
+            assert_eq!(fit.silent_points(), points.len() - below.len());
             for &(name, wanted, error) in known {
                 let found = parameter(&fit, name);
                 assert!(near(found.value, wanted, 1e-5), "{found:?}");

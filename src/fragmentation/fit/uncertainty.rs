@@ -14,18 +14,24 @@ use super::points::Points;
 /// Percents that differ by less are the same.
 const ROUNDING: f64 = 1e-9;
 
-/// How many points say nothing of the `free` coordinates: everything passed them, and the function says
-/// so there whatever these are, as it does at and above its largest size.
-pub(super) fn certain(family: &Family, points: &Points, at: &Coordinates, free: &[usize]) -> usize {
+/// Which points say something of the `free` coordinates: not those that everything passed and of which the function says so whatever
+/// these are, as it does at and above its largest size.
+pub(super) fn telling(
+    family: &Family,
+    points: &Points,
+    at: &Coordinates,
+    free: &[usize],
+) -> Vec<bool> {
     let is_nothing = |share: f64| 100.0 * share.abs() < ROUNDING;
-    let certain = points.points.iter().filter(|point| {
+    let tells = points.points.iter().map(|point| {
         let found = family.share(at, point.ln_size);
         let mut changes = free.iter().map(|&index| found.gradient[index]);
-        is_nothing(1.0 - point.percent / 100.0)
+        let is_certain = is_nothing(1.0 - point.percent / 100.0)
             && is_nothing(1.0 - found.share)
-            && changes.all(is_nothing)
+            && changes.all(is_nothing);
+        !is_certain
     });
-    certain.count()
+    tells.collect()
 }
 
 /// The covariance at an optimum.

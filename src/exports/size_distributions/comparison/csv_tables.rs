@@ -1,10 +1,10 @@
 //! A comparison as CSV: one table that programs and spreadsheets read, whose column `part` says what a line is of.
 
-use crate::fragmentation::Comparison;
+use crate::fragmentation::{Comparison, MeasuredNorm};
 
 /// Its columns. UNIT is that of the sizes, ENVELOPE half the envelope's width. (The first two and the last three also stood about the
 /// first table of earlier versions: by them a file is known as one that may be written over, `files/marks.rs`.)
-const COLUMNS: [&str; 22] = [
+const COLUMNS: [&str; 27] = [
     "method",
     "size_UNIT",
     "part",
@@ -19,8 +19,13 @@ const COLUMNS: [&str; 22] = [
     "difference",
     "percent_error",
     "within_ENVELOPE_percent",
+    "interpolated",
     "rms_difference",
     "relative_norm_percent",
+    "measured_from_UNIT",
+    "measured_to_UNIT",
+    "measured_rms_difference",
+    "measured_relative_norm_percent",
     "mean_shift_percent",
     "shift_spread_percent",
     "improvement_percent",
@@ -33,8 +38,9 @@ const COLUMNS: [&str; 22] = [
 type Line = Vec<(&'static str, String)>;
 
 /// The lines of its parts, one part after another: `mean` of every method by size, the reference's first; `error` by method and size;
-/// `percentile` and `norm` by method; `improvement` of a method over every other one. What is not known is empty; numbers read back to
-/// the same f64.
+/// `percentile` and `norm` by method; `improvement` of a method over every other one. `interpolated`: not measured at this size, but taken
+/// from those beside it. The norm comes once over all of the reference's function and once where both were measured. What is not known is
+/// empty; numbers read back to the same f64.
 ///
 /// # Errors
 /// Where memory runs out.
@@ -90,6 +96,8 @@ fn errors(comparison: &Comparison) -> Vec<Line> {
     let lines = comparison.methods.iter().flat_map(|method| {
         method.residuals.iter().map(move |residual| {
             let within = residual.within.map(|within| within.to_string());
+            // Of what is not known there is nothing to interpolate.
+            let interpolated = residual.passing.map(|_| residual.interpolated.to_string());
             vec![
                 ("method", method.curve.method.clone()),
                 ("size_UNIT", residual.size.to_string()),
@@ -98,6 +106,7 @@ fn errors(comparison: &Comparison) -> Vec<Line> {
                 ("difference", number(residual.difference)),
                 ("percent_error", number(residual.percent_error)),
                 ("within_ENVELOPE_percent", within.unwrap_or_default()),
+                ("interpolated", interpolated.unwrap_or_default()),
             ]
         })
     });
@@ -126,10 +135,22 @@ fn percentiles(comparison: &Comparison) -> Vec<Line> {
 fn norms(comparison: &Comparison) -> Vec<Line> {
     let lines = comparison.methods.iter().map(|method| {
         let (norm, shift) = (&method.norm, &method.shift);
+        let measured =
+            |value: fn(&MeasuredNorm) -> f64| number(method.measured_norm.as_ref().map(value));
         vec![
             ("method", method.curve.method.clone()),
             ("rms_difference", norm.rms_difference.to_string()),
             ("relative_norm_percent", norm.relative_percent.to_string()),
+            ("measured_from_UNIT", measured(|of| of.from)),
+            ("measured_to_UNIT", measured(|of| of.to)),
+            (
+                "measured_rms_difference",
+                measured(|of| of.norm.rms_difference),
+            ),
+            (
+                "measured_relative_norm_percent",
+                measured(|of| of.norm.relative_percent),
+            ),
             ("mean_shift_percent", shift.mean_percent.to_string()),
             ("shift_spread_percent", number(shift.spread_percent)),
         ]
@@ -160,7 +181,9 @@ mod tests {
     /// One table: as many cells in every line as there are columns, and every cell in a column of its name.
     #[test]
     fn a_program_reads_it_as_one_table() {
-        let text = comparison_csv(&comparison()).unwrap();
+        let mut comparison = comparison();
+        comparison.methods[1].residuals[1].interpolated = true;
+        let text = comparison_csv(&comparison).unwrap();
         let mut reader = csv::Reader::from_reader(text.as_bytes());
         let names = reader.headers().unwrap().clone();
         let lines: Vec<csv::StringRecord> = reader.records().map(|line| line.unwrap()).collect();
@@ -183,12 +206,18 @@ mod tests {
             ),
             (
                 6,
-                "method point cloud, size_mm 10, part error, percent_passing 5, reference_percent_passing 0, difference 5",
+                "method point cloud, size_mm 10, part error, percent_passing 5, reference_percent_passing 0, difference 5, \
+                 interpolated false",
             ),
             (
                 7,
                 "method point cloud, size_mm 100, part error, percent_passing 88, reference_percent_passing 80, difference 8, \
-                 percent_error 10, within_30_percent true",
+                 percent_error 10, within_30_percent true, interpolated false",
+            ),
+            (
+                9,
+                "method scale object, size_mm 100, part error, percent_passing 88, reference_percent_passing 80, difference 8, \
+                 percent_error 10, within_30_percent true, interpolated true",
             ),
             (
                 10,
@@ -197,7 +226,8 @@ mod tests {
             ),
             (
                 12,
-                "method point cloud, part norm, rms_difference 4, relative_norm_percent 9.4, mean_shift_percent -10",
+                "method point cloud, part norm, rms_difference 4, relative_norm_percent 9.4, measured_from_mm 10, measured_to_mm 100, \
+                 measured_rms_difference 3, measured_relative_norm_percent 5, mean_shift_percent -10",
             ),
             (
                 15,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::fragmentation::{
-    Comparison, MethodComparison, MethodCurve, PERCENT_ERROR, SCALE_WARNING,
+    Comparison, CurveNorm, MethodComparison, MethodCurve, PERCENT_ERROR, SCALE_WARNING,
 };
 
 #[derive(Serialize)]
@@ -55,6 +55,8 @@ struct Method<'a> {
     curve: Curve<'a>,
     residuals: Vec<Residual>,
     norm: Norm,
+    /// Where both were measured.
+    measured_norm: Option<MeasuredNorm>,
     percentiles: Vec<Percentile>,
     shift: Shift,
     notes: &'a [String],
@@ -76,6 +78,16 @@ struct Residual {
 struct Norm {
     rms_difference: f64,
     relative_percent: f64,
+}
+
+#[derive(Serialize)]
+struct MeasuredNorm {
+    from: f64,
+    to: f64,
+    /// Of the span, on its logarithmic axis.
+    share: f64,
+    #[serde(flatten)]
+    norm: Norm,
 }
 
 #[derive(Serialize)]
@@ -169,6 +181,13 @@ fn curve(curve: &MethodCurve) -> Curve<'_> {
     }
 }
 
+fn norm(norm: &CurveNorm) -> Norm {
+    Norm {
+        rms_difference: norm.rms_difference,
+        relative_percent: norm.relative_percent,
+    }
+}
+
 fn method(method: &MethodComparison) -> Method<'_> {
     let residuals = method.residuals.iter().map(|residual| Residual {
         size: residual.size,
@@ -190,10 +209,13 @@ fn method(method: &MethodComparison) -> Method<'_> {
     Method {
         curve: curve(&method.curve),
         residuals: residuals.collect(),
-        norm: Norm {
-            rms_difference: method.norm.rms_difference,
-            relative_percent: method.norm.relative_percent,
-        },
+        norm: norm(&method.norm),
+        measured_norm: method.measured_norm.as_ref().map(|of| MeasuredNorm {
+            from: of.from,
+            to: of.to,
+            share: of.share,
+            norm: norm(&of.norm),
+        }),
         percentiles: percentiles.collect(),
         shift: Shift {
             mean_percent: method.shift.mean_percent,
@@ -227,6 +249,8 @@ mod tests {
         assert_eq!(method["residuals"][0]["interpolated"], false);
         assert_eq!(method["residuals"][1]["interpolated"], true);
         assert_eq!(method["norm"]["relative_percent"], 9.4);
+        assert_eq!(method["measured_norm"]["relative_percent"], 5.0);
+        assert_eq!(method["measured_norm"]["to"], 100.0);
         assert_eq!(method["percentiles"][0]["shift_percent"], -10.0);
         assert_eq!(method["shift"]["mean_percent"], -10.0);
         assert_eq!(value["improvements"][0]["percent"], 6.0);

@@ -14,8 +14,8 @@ pub(super) mod test_comparison {
 
     use crate::fragmentation::{
         Comparison, ComparisonOptions, CurveNorm, Fit, FitOptions, FittedParameter, Improvement,
-        MeanPoint, MethodComparison, MethodCurve, Model, PercentError, PercentileShift, Shift,
-        SizeDistribution, Span, Swebrec, fit,
+        MeanPoint, MeasuredNorm, MethodComparison, MethodCurve, Model, PercentError,
+        PercentileShift, Shift, SizeDistribution, Span, Swebrec, fit,
     };
     use crate::units::LengthUnit;
 
@@ -77,6 +77,15 @@ pub(super) mod test_comparison {
                 rms_difference: 4.0,
                 relative_percent,
             },
+            measured_norm: Some(MeasuredNorm {
+                from: 10.0,
+                to: 100.0,
+                share: 0.4,
+                norm: CurveNorm {
+                    rms_difference: 3.0,
+                    relative_percent: 5.0,
+                },
+            }),
             shift: Shift {
                 percentiles: vec![PercentileShift {
                     measured: true,

@@ -297,6 +297,7 @@ fn a_comparison_shows_what_it_found() {
                 rms_difference: 1.0,
                 relative_percent: 1.0,
             },
+            measured_norm: None,
             shift: Shift {
                 percentiles: Vec::new(),
                 mean_percent: 0.0,
