@@ -1,13 +1,15 @@
 //! `fragscale info`: what a file or folder holds.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::Answer;
+use crate::batch::Season;
 use crate::exports::crs_in_words;
 use crate::fault::one_line;
+use crate::files::{FileError, read_text};
 use crate::geodesy::Crs;
 use crate::jobs::Progress;
 use crate::opening;
@@ -28,12 +30,63 @@ enum InfoFormat {
 }
 
 pub(super) fn info(arguments: &InfoArguments, progress: &Progress) -> Result<Answer, String> {
-    let value = opening::info(&arguments.file, progress).map_err(|error| error.to_string())?;
+    let value = match season(&arguments.file) {
+        Some(season) => season,
+        None => opening::info(&arguments.file, progress),
+    };
+    let value = value.map_err(|error| error.to_string())?;
     let text = match arguments.format {
         InfoFormat::Json => format!("{value}\n"),
         InfoFormat::Text => info_text(&value),
     };
     Ok(Answer::new(text, Vec::new()))
+}
+
+/// What a SEASON.toml names, or what is wrong with it; `None` of any other file.
+fn season(path: &Path) -> Option<Result<Value, FileError>> {
+    if !Season::is_season(path) {
+        return None;
+    }
+    let season = match Season::read(path) {
+        Ok(season) => season,
+        // A flight of which much is missing still is one, and its own faults are said.
+        Err(error) => return names_flights(path).then_some(Err(error)),
+    };
+    Some(season_info(&season))
+}
+
+/// Whether a text has the tables of a season, which no flight has.
+fn names_flights(path: &Path) -> bool {
+    let text = read_text(path).unwrap_or_default();
+    text.lines().any(|line| line.trim() == "[[flight]]")
+}
+
+fn season_info(season: &Season) -> Result<Value, FileError> {
+    // Without one there are none to be told from flights.
+    let found = season.flights(season.to.as_deref().unwrap_or(Path::new("")))?;
+    let flights = found.flights.iter().map(|flight| {
+        json!({
+            "blast": flight.blast,
+            "date": flight.date.map(|date| date.to_string()),
+            "path": flight.path.display().to_string(),
+        })
+    });
+    let flights: Vec<Value> = flights.collect();
+    let steps = season.asked.steps.iter();
+    let steps: Vec<&str> = steps.map(|asked| asked.step.as_str()).collect();
+    let count = match flights.len() {
+        1 => "1 flight".to_owned(),
+        count => format!("{count} flights"),
+    };
+    Ok(json!({
+        "kind": "season",
+        "what": format!("a season of {count}: 'fragscale batch' goes through it"),
+        "name": season.name,
+        "unit": season.asked.unit,
+        "steps": steps,
+        "flights": flights,
+        "warnings": found.notes,
+    }))
 }
 
 /// The top level of an `info` value, a line each; of lists how long they are.
@@ -86,6 +139,10 @@ fn info_text(value: &Value) -> String {
             Value::Array(list) if key == "cameras" && is_camera => {
                 text.extend(list.iter().map(camera));
                 continue;
+            }
+            Value::Array(list) if key == "steps" => {
+                let steps = list.iter().filter_map(Value::as_str);
+                steps.collect::<Vec<_>>().join(", ")
             }
             Value::Array(list) if key == "photos" && are_poses_alone => {
                 text += &format!("poses: {}\n", list.len());
@@ -171,7 +228,7 @@ fn in_words(value: &Value) -> String {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
+    use std::fs;
 
     use super::*;
 
@@ -198,6 +255,30 @@ mod tests {
         assert_eq!(own, "crs: Pit grid\n");
         let code = info_text(&json!({"crs": "EPSG:32633"}));
         assert_eq!(code, "crs: EPSG:32633\n");
+    }
+
+    #[test]
+    fn a_season_is_none_of_the_flights() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("SEASON.toml");
+        let info = |text: &str| {
+            fs::write(&path, text).unwrap();
+            season(&path)
+        };
+        let start = "format = 1\nname = \"North\"\n";
+        let flights = "[[flight]]\npath = \"a\"\n[[flight]]\npath = \"b\"\n";
+        for name in ["a", "b"] {
+            fs::create_dir(folder.path().join(name)).unwrap();
+        }
+        let text = format!("{start}steps = [\"scales\", \"check\"]\n{flights}");
+        let said = info_text(&info(&text).unwrap().unwrap());
+        assert!(said.contains("what: a season of 2 flights:"), "{said}");
+        assert!(said.contains("steps: scales, check\n"), "{said}");
+        let error = info(&format!("{start}color = 1\n{flights}")).unwrap();
+        let error = error.unwrap_err().to_string();
+        assert!(error.contains("unknown key 'color'"), "{error}");
+        // A flight of which much is missing.
+        assert!(info("format = 1\n[surface]\nfile = \"pile.ply\"\n").is_none());
     }
 
     #[test]

@@ -8,6 +8,12 @@ pub fn last_segment(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
+/// The last part of a path without what is behind its last dot.
+pub fn stem(path: &str) -> &str {
+    let name = last_segment(path);
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -23,6 +29,18 @@ mod tests {
             ("", ""),
         ] {
             assert_eq!(last_segment(path), last, "{path}");
+        }
+    }
+
+    #[test]
+    fn a_stem_ends_at_the_last_dot() {
+        for (path, found) in [
+            (r"D:\v1.2\a.b.jpg", "a.b"),
+            ("v1.2/a", "a"),
+            ("a.", "a"),
+            (".a", ""),
+        ] {
+            assert_eq!(stem(path), found, "{path}");
         }
     }
 }

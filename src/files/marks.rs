@@ -65,9 +65,7 @@ impl Kind {
         if lines.any(|line| line.starts_with(mark)) {
             return Some(Self::Flight);
         }
-        let is_picture = is_png(beginning) || is_tiff(beginning) || is_pdf(beginning);
-        let is_result = is_picture || is_kmz(beginning) || is_text(beginning);
-        is_result.then_some(Self::Result)
+        result_in_words(beginning).map(|_| Self::Result)
     }
 }
 
@@ -83,6 +81,22 @@ pub fn marked_png(mut bytes: Vec<u8>) -> Vec<u8> {
 pub fn is_own_result(bytes: &[u8]) -> bool {
     let beginning = bytes.get(..LOOKED_AT as usize).unwrap_or(bytes);
     Kind::of(beginning) == Some(Kind::Result)
+}
+
+/// What of fragscale's results a file is, told by its beginning; `None` of any other file.
+pub(super) fn result_in_words(beginning: &[u8]) -> Option<&'static str> {
+    let of_bytes = [
+        (is_png(beginning) || is_tiff(beginning), "a picture"),
+        (is_pdf(beginning), "a page (PDF)"),
+        (is_kmz(beginning), "a mission"),
+    ];
+    first_that_is(of_bytes).or_else(|| text_in_words(beginning))
+}
+
+/// The words of the first that it is.
+fn first_that_is(all: impl IntoIterator<Item = (bool, &'static str)>) -> Option<&'static str> {
+    let mut all = all.into_iter();
+    all.find_map(|(is_it, words)| is_it.then_some(words))
 }
 
 fn is_png(beginning: &[u8]) -> bool {
@@ -106,105 +120,188 @@ fn is_kmz(beginning: &[u8]) -> bool {
     beginning.starts_with(b"PK\x03\x04") && windows.any(|window| window == author.as_bytes())
 }
 
-fn is_text(beginning: &[u8]) -> bool {
+fn text_in_words(beginning: &[u8]) -> Option<&'static str> {
     let text = String::from_utf8_lossy(beginning);
     let mut lines = text.lines();
     let [first, second] = [(); 2].map(|()| lines.next().unwrap_or_default());
     let begins = |start: &str| text.starts_with(start);
     let has = |part: &str| text.contains(part);
     let (svg, html) = (SVG_MARK.trim_end(), HTML_MARK.trim_end());
-    begins("<svg ") && has(svg)
-        || begins("<!DOCTYPE html>") && has(html)
-        || text.lines().nth(6).is_some_and(|line| line.starts_with(WORLD_FILE_MARK))
-        || is_csv(first)
-        || is_table(first)
-        // The scales of a flight.
-        || begins("{\"flight\":") && has(",\"world_unit\":\"")
-        // Fitted functions, one or several.
-        || (begins("{\"model\":\"") || begins("[{\"curve\":\"") || begins("[{\"model\":\""))
-            && has("\"weighted\":")
-            && has("\"standard_errors\":{")
-        // A comparison.
-        || begins("{\"unit\":\"") && has("\"model\":\"") && has("\"envelope_percent\":")
-        // An analysis of variance.
-        || begins("{\"between\":{\"df\":")
-        // What is kept of a photo while others are outlined.
-        || begins("{\"delineated\":\"") && has("\"files\":[")
-        // What outlines of fragments are of.
-        || begins("{\"outlines\":\"") && has("\"lens\":[[")
-        // A season of flights, and what of one of them was read and written.
-        || begins("{\"blast\":\"") && has(",\"verdicts\":")
-        || begins("{\n  \"fragscale_batch\": ")
-        // Times.
-        || begins("{\"unit\":\"min\",\"columns\":[")
-        // A plan of photos, and what was flown of it.
-        || begins("{\n  \"area\": [\n    [\n")
-        || begins("{\n  \"flight\": \"") && has("\n  \"photos\": [\n    {\n      \"center\": [")
-        // Missions: QGroundControl's, GeoJSON's.
-        || begins("{\n  \"fileType\": \"Plan\",\n  \"groundStation\": \"fragscale\",")
-        || begins("{\"type\":\"FeatureCollection\",\"fragscale\":\"mission")
-        // Mission Planner's, Litchi's.
-        || begins("QGC WPL 110\n") && second.starts_with(WAYPOINTS_MARK)
+    let seventh = text.lines().nth(6).unwrap_or_default();
+    let is_fit = begins("{\"model\":\"") || begins("[{\"curve\":\"") || begins("[{\"model\":\"");
+    // Mission Planner's, Litchi's.
+    let is_mission = begins("QGC WPL 110\n") && second.starts_with(WAYPOINTS_MARK)
         || begins("latitude,longitude,altitude(m),") && second.ends_with(LITCHI_MARK)
-        // Outlines of fragments: COCO, LabelMe, GeoJSON in pixels.
-        || begins("{\"info\":{\"description\":\"Fragments outlined by fragscale")
+        // QGroundControl's, GeoJSON's.
+        || begins("{\n  \"fileType\": \"Plan\",\n  \"groundStation\": \"fragscale\",")
+        || begins("{\"type\":\"FeatureCollection\",\"fragscale\":\"mission");
+    // COCO, LabelMe, GeoJSON in pixels.
+    let are_outlines = begins("{\"info\":{\"description\":\"Fragments outlined by fragscale")
         || begins("{\"version\":\"5.5.0\",\"fragscale\":\"fragments")
-        || begins("{\"type\":\"FeatureCollection\",\"fragscale\":\"fragments")
-        // KML, and outlines of fragments for CVAT.
-        || begins("<?xml ") && second == svg
+        || begins("{\"type\":\"FeatureCollection\",\"fragscale\":\"fragments");
+    let found = first_that_is([
+        (begins("<svg ") && has(svg), "a figure"),
+        (begins("<!DOCTYPE html>") && has(html), "a page"),
+        (seventh.starts_with(WORLD_FILE_MARK), "a world file"),
+    ]);
+    let found = found.or_else(|| csv_in_words(first));
+    let found = found.or_else(|| table_in_words(first));
+    found.or_else(|| {
+        first_that_is([
+            (
+                begins("{\"flight\":") && has(",\"world_unit\":\""),
+                "scales",
+            ),
+            // One or several.
+            (
+                is_fit && has("\"weighted\":") && has("\"standard_errors\":{"),
+                "fitted functions",
+            ),
+            (
+                begins("{\"unit\":\"") && has("\"model\":\"") && has("\"envelope_percent\":"),
+                "a comparison of size distributions",
+            ),
+            (begins("{\"between\":{\"df\":"), "an analysis of variance"),
+            (
+                begins("{\"delineated\":\"") && has("\"files\":["),
+                "what is kept of a photo while others are outlined",
+            ),
+            (
+                begins("{\"outlines\":\"") && has("\"lens\":[["),
+                "what outlines of fragments are of",
+            ),
+            (
+                begins("{\"blast\":\"") && has(",\"verdicts\":"),
+                "a season's lines",
+            ),
+            // What of one flight was read and written.
+            (
+                begins("{\n  \"fragscale_batch\": "),
+                "the record of a season's flight",
+            ),
+            (
+                begins("{\"unit\":\"min\",\"columns\":["),
+                "a table of times",
+            ),
+            (begins("{\n  \"area\": [\n    [\n"), "a plan of photos"),
+            (
+                begins("{\n  \"flight\": \"")
+                    && has("\n  \"photos\": [\n    {\n      \"center\": ["),
+                "a comparison of what was planned and flown",
+            ),
+            (is_mission, "a mission"),
+            (are_outlines, "outlines of fragments"),
+            // KML, and outlines of fragments for CVAT.
+            (
+                begins("<?xml ") && second == svg,
+                "places or outlines as XML",
+            ),
+        ])
+    })
 }
 
 /// The heads of our CSV files.
-fn is_csv(first: &str) -> bool {
-    // Scales, by photo.
-    first.starts_with("photo,width_px,height_px,top_px_per_")
-        // Fitted functions.
-        || first == "curve,model,quantity,unit,value,standard_error,band_low,band_high"
-        // A comparison.
-        || first.starts_with("method,size_")
-            && first.ends_with(",mean_percent_passing,standard_deviation,trials")
-        // An analysis of variance, perhaps with a column in front.
-        || first.ends_with(
-            "source,degrees_of_freedom,sum_of_squares,mean_square,f,critical_f,p,note",
-        )
-        // Times.
-        || first.starts_with("step,") && first.ends_with(",total_min,average_min")
-        // A profile, a volume, picked points.
-        || first.starts_with("distance_") && first.ends_with(",part")
-        || first.starts_with("flight,base,fill_")
-        || first.starts_with("point,x_") && first.contains(",y_") && first.contains(",z_")
-        // A plan of photos, and what was flown of it.
-        || first.starts_with("photo,x_") && first.ends_with(",troubles")
-        || first.starts_with("planned,photo,x_")
-        // Outlined fragments, and their size distributions.
-        || first.starts_with("photo,percent_passing,size_")
-        || first.starts_with("photo,fragment,column_px,row_px,pixels,cut,x_")
-        || first.starts_with("method,photo,size_") && first.contains(",percent_passing,area")
-        // A season of flights.
-        || first.starts_with("blast,date,state,photos,") && first.ends_with(",flight,results")
-        // Of the window's frames.
-        || first.starts_with("start_s,logic,panels,upload,draw,commands,")
+fn csv_in_words(first: &str) -> Option<&'static str> {
+    let begins = |start: &str| first.starts_with(start);
+    let ends = |end: &str| first.ends_with(end);
+    let has = |part: &str| first.contains(part);
+    first_that_is([
+        // By photo.
+        (
+            begins("photo,width_px,height_px,top_px_per_"),
+            "a table of scales",
+        ),
+        (
+            first == "curve,model,quantity,unit,value,standard_error,band_low,band_high",
+            "a table of fitted functions",
+        ),
+        (
+            begins("method,size_") && ends(",mean_percent_passing,standard_deviation,trials"),
+            "a comparison of size distributions",
+        ),
+        // Perhaps with a column in front.
+        (
+            ends("source,degrees_of_freedom,sum_of_squares,mean_square,f,critical_f,p,note"),
+            "an analysis of variance",
+        ),
+        (
+            begins("step,") && ends(",total_min,average_min"),
+            "a table of times",
+        ),
+        (begins("distance_") && ends(",part"), "a profile"),
+        (begins("flight,base,fill_"), "a volume"),
+        (
+            begins("point,x_") && has(",y_") && has(",z_"),
+            "a table of picked points",
+        ),
+        (begins("photo,x_") && ends(",troubles"), "a plan of photos"),
+        (
+            begins("planned,photo,x_"),
+            "a comparison of what was planned and flown",
+        ),
+        (
+            begins("photo,percent_passing,size_"),
+            "a table of size distributions",
+        ),
+        (
+            begins("photo,fragment,column_px,row_px,pixels,cut,x_"),
+            "a table of fragments",
+        ),
+        (
+            begins("method,photo,size_") && has(",percent_passing,area"),
+            "a table of size distributions",
+        ),
+        (
+            begins("blast,date,state,photos,") && ends(",flight,results"),
+            "the table of a season",
+        ),
+        // Of the window's.
+        (
+            begins("start_s,logic,panels,upload,draw,commands,"),
+            "a table of frames",
+        ),
+    ])
 }
 
 /// The first lines of our tables for people.
-fn is_table(first: &str) -> bool {
+fn table_in_words(first: &str) -> Option<&'static str> {
     let has = |part: &str| first.contains(part);
-    // A plan of photos, and what was flown of it.
-    has(": plan of ") && has(" photos; scales in px/")
-        || has(": flown less planned, lengths in ")
-        // Scales.
-        || has(": scales of the ") && has(" in pixels per ")
-        // What was looked at.
-        || first == CHECK_MARK
-        || first == FAILED_MARK
-        // Fitted functions.
-        || has(" fitted to ") && has(" points") && has("; sizes in ")
-        // A comparison.
-        || has(", the reference: ") && first.ends_with(" percentage points")
-        // An analysis of variance.
-        || first.starts_with("source ") && has("  sum of squares  ") && has("  critical F  ")
-        // Times.
-        || first.starts_with("step (minutes)  ") && first.ends_with("  average")
+    let begins = |start: &str| first.starts_with(start);
+    first_that_is([
+        (
+            has(": plan of ") && has(" photos; scales in px/"),
+            "a plan of photos",
+        ),
+        (
+            has(": flown less planned, lengths in "),
+            "a comparison of what was planned and flown",
+        ),
+        (
+            has(": scales of the ") && has(" in pixels per "),
+            "a table of scales",
+        ),
+        (first == CHECK_MARK, "what was looked at in a flight"),
+        (
+            first == FAILED_MARK,
+            "the word that a flight of a season failed",
+        ),
+        (
+            has(" fitted to ") && has(" points") && has("; sizes in "),
+            "a table of fitted functions",
+        ),
+        (
+            has(", the reference: ") && first.ends_with(" percentage points"),
+            "a comparison of size distributions",
+        ),
+        (
+            begins("source ") && has("  sum of squares  ") && has("  critical F  "),
+            "an analysis of variance",
+        ),
+        (
+            begins("step (minutes)  ") && first.ends_with("  average"),
+            "a table of times",
+        ),
+    ])
 }
 
 #[cfg(test)]
@@ -226,6 +323,22 @@ mod tests {
             b"\xff\xd8 a photo"
         );
         assert_eq!(marked_png(b"\x89PNG".to_vec()), b"\x89PNG");
+    }
+
+    #[test]
+    fn a_result_is_told_in_words() {
+        let of = |text: &str| result_in_words(text.as_bytes());
+        let scales = "photo,width_px,height_px,top_px_per_cm,bottom_px_per_cm\n";
+        assert_eq!(of(scales), Some("a table of scales"));
+        let plan = "photo,x_m,y_m,z_m,troubles\n";
+        assert_eq!(of(plan), Some("a plan of photos"));
+        let page = format!("<!DOCTYPE html>\n<html>\n<head>\n{HTML_MARK}");
+        assert_eq!(of(&page), Some("a page"));
+        assert_eq!(
+            of("{\"between\":{\"df\":2}}"),
+            Some("an analysis of variance")
+        );
+        assert_eq!(of("photo,x,y,z\n"), None);
     }
 
     /// What people have beside a flight is none of ours.

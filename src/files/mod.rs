@@ -5,7 +5,7 @@
 //! inputs        the files that were read, known by identity and not by name
 //! recording     which files are opened on the way
 //! input         opening files: whole bytes, text, errors with the file's name
-//! last_segment  what a file is called, by a path that a text names
+//! last_segment  what a file is called, by a path that a text names, with its ending and without
 //! same_name     whether two names of files are one, whatever their case and accents
 //! marks         what tells a file that fragscale wrote
 //! atomic        files and folders that are there whole or not at all
@@ -32,11 +32,13 @@ pub use input::{
     unreadable_folder,
 };
 pub use inputs::{Inputs, is_same_file};
-pub use last_segment::last_segment;
+pub use last_segment::{last_segment, stem};
 pub use lock::lock;
 pub use marks::{
     CHECK_MARK, FAILED_MARK, FLIGHT_MARK, HTML_MARK, KMZ_MARK, Kind, LITCHI_MARK, PDF_MARK,
     SVG_MARK, WAYPOINTS_MARK, WORLD_FILE_MARK, is_own_result, marked_png,
 };
-pub use overwrite::{Standing, has_folder, make_folder, may_write, standing, write};
+pub use overwrite::{
+    Standing, has_folder, make_folder, may_write, result_in_words, standing, write,
+};
 pub use recording::{Recording, note_kept, note_opened};

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use super::atomic::write_whole;
 use super::input::{FileError, cannot_be};
 use super::inputs::Inputs;
-use super::marks::{Kind, LOOKED_AT};
+use super::marks::{self, Kind, LOOKED_AT};
 use crate::fault::Fault;
 
 /// What stands where something is to be written.
@@ -57,6 +57,12 @@ pub fn standing(path: &Path, kind: Kind, inputs: &Inputs) -> Standing {
         Some(read) => Standing::Read(read.to_owned()),
         None => Standing::Foreign,
     }
+}
+
+/// What of fragscale's results a file is, as "a table of scales"; `None` of any other, and of what cannot be read.
+pub fn result_in_words(path: &Path) -> Option<&'static str> {
+    let bytes = path.is_file().then(|| beginning(path).ok())?;
+    marks::result_in_words(&bytes?)
 }
 
 fn beginning(path: &Path) -> io::Result<Vec<u8>> {

@@ -4,6 +4,8 @@
 
 use unicode_normalization::UnicodeNormalization;
 
+use super::stem;
+
 /// By what names are compared where the case of letters makes no difference: equal for names that are the same.
 pub fn key(name: &str) -> String {
     match name.is_ascii() {
@@ -16,6 +18,11 @@ pub fn key(name: &str) -> String {
 /// Whether both are the same name, the case of letters counted.
 pub fn is_same(one: &str, other: &str) -> bool {
     one.nfc().eq(other.nfc())
+}
+
+/// Whether the names of two files are the same without folders and endings, the case of letters counted: how outlines name their photo.
+pub fn is_same_stem(one: &str, other: &str) -> bool {
+    is_same(stem(one), stem(other))
 }
 
 /// The other ways to spell a path, for systems that take each for another file.
@@ -42,5 +49,7 @@ mod tests {
         assert_eq!(key("HA\u{308}NGE_1.JPG"), "h\u{e4}nge_1.jpg");
         assert!(!is_same("H\u{c4}NGE.jpg", "HANGE.jpg"));
         assert!(!is_same("h\u{e4}nge.jpg", "H\u{c4}NGE.jpg"));
+        assert!(is_same_stem("a/H\u{c4}NGE.JPG", "b\\HA\u{308}NGE.png"));
+        assert!(!is_same_stem("a.b.jpg", "a.jpg"));
     }
 }

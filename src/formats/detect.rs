@@ -210,6 +210,10 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
                     format!("{kind}, which is not looked into"),
                     "unpack it first, then open the folder or the file that was in it",
                 ),
+                None if is_control_of_opensfm(&String::from_utf8_lossy(text)) => Fault::new(
+                    "OpenSfM's own list of ground control points, which is not read",
+                    "give the gcp_list.txt that it was made of to 'fragscale georeference' as --gcp",
+                ),
                 None => Fault::new(
                     "a file of no known kind",
                     format!("supported are {SUPPORTED}"),
@@ -232,6 +236,13 @@ fn archive(start: &[u8], extension: &str) -> Option<&'static str> {
     let mut archives = known.into_iter();
     let found = archives.find(|(magic, _, named)| *named && start.starts_with(magic));
     found.map(|(_, kind, _)| kind)
+}
+
+/// Whether a text is OpenSfM's ground_control_points.json: points with the photos that show them.
+fn is_control_of_opensfm(text: &str) -> bool {
+    let has = |key: &str| text.contains(key);
+    let is_list = text.trim_start().starts_with('{') && has("\"points\"");
+    is_list && has("\"observations\"") && has("\"shot_id\"")
 }
 
 /// How many rows and columns a text has that is nothing but a camera's matrix (3 x 3) or a pose's (4 x 4). Their last row is what
@@ -329,6 +340,19 @@ mod tests {
             let unpack = fault.remedy.starts_with("unpack it first");
             assert_eq!(unpack, what.ends_with("archive"), "{name}: {fault}");
         }
+    }
+
+    /// The beginning of the list of OpenSfM's data set of Berlin.
+    #[test]
+    fn control_points_of_opensfm_are_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("ground_control_points.json");
+        let text = "{\n    \"points\": [\n        {\n            \"id\": \"1\",\n            \"observations\": [\n                \
+            {\"projection\": [0.049848, 0.144291], \"shot_id\": \"02.jpg\"}]}]}";
+        fs::write(&path, text).unwrap();
+        let fault = detect(&path).unwrap_err().fault;
+        assert!(fault.what.starts_with("OpenSfM's own list"), "{fault}");
+        assert!(fault.remedy.contains("gcp_list.txt"), "{fault}");
     }
 
     /// K.txt of the photos of Sceaux, as openMVG's data sets have it, and a pose's matrix.

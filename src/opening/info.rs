@@ -1,5 +1,7 @@
 //! What the program understood of a file (contract, section 6), as JSON.
 
+mod own;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -32,7 +34,11 @@ use fragscale_core::plan::{Height, LostSignal};
 /// # Errors
 /// With the file and the place in it.
 pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
-    let kind = match detect(path) {
+    let kind = detect(path);
+    if let Some(own) = own::own_info(path, kind.as_ref().ok()) {
+        return Ok(own);
+    }
+    let kind = match kind {
         Ok(kind) => kind,
         // DJI's list of places has no name that tells.
         Err(error) => return known_places_info(path).unwrap_or(Err(error)),

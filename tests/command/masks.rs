@@ -281,7 +281,7 @@ fn the_limit_is_the_smallest_outline() {
     assert!(fit.contains("P10, P20, P50 and what is computed"), "{fit}");
 }
 
-/// An empty label image is no result, and what another run left in the folder is said.
+/// An empty label image is refused before anything is written, and what another run left in the folder is said.
 #[test]
 fn nothing_outlined_and_left_over() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -295,17 +295,18 @@ fn nothing_outlined_and_left_over() {
     labels.save(&one).expect("a picture");
     let to = path("out");
     let run = |photo: &str, masks: &str| measured(photo, masks, &to, &["--also", "coco"]);
-    assert!(run("IMG_0004.jpg", &one).status.success());
     let done = run("IMG_0005.jpg", &empty);
     let said = String::from_utf8_lossy(&done.stderr);
     assert_eq!(done.status.code(), Some(1));
-    for wanted in [
-        "no photo has a size distribution",
-        "no fragment is outlined",
-        "3 files in ",
-        "IMG_0004_labels.png",
-        "are of another run",
-    ] {
+    assert_eq!(said.matches("error: ").count(), 1, "{said}");
+    let words = "no fragment of IMG_0005.jpg is outlined in it, only fines or background";
+    assert!(said.contains(words), "{said}");
+    assert!(!Path::new(&to).exists());
+    assert!(run("IMG_0004.jpg", &one).status.success());
+    let done = run("IMG_0005.jpg", &one);
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{said}");
+    for wanted in ["3 files in ", "IMG_0004_labels.png", "are of another run"] {
         assert!(said.contains(wanted), "{wanted} in {said}");
     }
 }

@@ -38,7 +38,7 @@ mod tests;
 use std::path::Path;
 
 use crate::fault::Fault;
-use crate::files::same_name::is_same;
+use crate::files::same_name::{is_same, is_same_stem};
 use crate::files::{FileError, is_own_result, last_segment, read_small, text_from_bytes};
 use crate::labels::{FINES, LabelImage, NOT_ROCK};
 use crate::text::notes::Notes;
@@ -179,7 +179,7 @@ impl MaskFile {
         let other = image
             .name
             .as_deref()
-            .filter(|name| !is_same(stem(name), stem(photo.name)));
+            .filter(|name| !is_same_stem(name, photo.name));
         if let (Contents::One(_), Some(other)) = (&self.contents, other) {
             let what = format!(
                 "it says that its outlines are of {other}, not of {}",
@@ -202,7 +202,7 @@ fn named<'a>(images: &'a [OutlinedImage], photo: &str) -> Result<&'a OutlinedIma
     let ways: [&dyn Fn(&str) -> bool; 3] = [
         &|name| name == photo,
         &|name| is_same(last_segment(name), last_segment(photo)),
-        &|name| is_same(stem(name), stem(photo)),
+        &|name| is_same_stem(name, photo),
     ];
     for way in ways {
         match all(way)[..] {
@@ -230,12 +230,6 @@ fn named<'a>(images: &'a [OutlinedImage], photo: &str) -> Result<&'a OutlinedIma
         ),
     };
     Err(Fault::new(what, "give the outlines of this photo"))
-}
-
-/// The last part of a path without what is behind its last dot.
-fn stem(name: &str) -> &str {
-    let name = last_segment(name);
-    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }
 
 /// The label image of a photo from a file.

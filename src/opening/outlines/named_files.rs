@@ -5,8 +5,8 @@ use std::collections::VecDeque;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::files::same_name;
-use crate::files::{last_segment, unreadable_folder};
+use crate::files::same_name::{self, is_same_stem};
+use crate::files::{last_segment, stem, unreadable_folder};
 use crate::formats::{FileError, MaskFile};
 
 /// More files are no folder of outlines.
@@ -128,7 +128,7 @@ pub(super) fn names(path: &Path, file: &MaskFile, photo: &str, photos: &[&str]) 
         .iter()
         .any(|other| is_namesake(other, photo) && folders_shared(path, other) > shared);
     let may_name =
-        |other: &str| is_of_stem(other, photo) && (other == photo || !photos.contains(&other));
+        |other: &str| is_same_stem(other, photo) && (other == photo || !photos.contains(&other));
     !lies_with_another && file.photos().any(may_name)
 }
 
@@ -149,11 +149,6 @@ pub(super) fn with_photo<'a>(
 /// Whether the files of two photos have one name, whatever folders they are in.
 pub(super) fn is_namesake(one: &str, other: &str) -> bool {
     same_name::key(stem(one)) == same_name::key(stem(other))
-}
-
-/// The same, where the case of letters counts.
-pub(super) fn is_of_stem(one: &str, other: &str) -> bool {
-    same_name::is_same(stem(one), stem(other))
 }
 
 /// Whether a file that calls its photo so may be of this one: letter case, ending and folder make no difference, and in fragscale's
@@ -297,10 +292,4 @@ pub(super) fn told(path: &Path, photo: &str) -> Option<Told> {
         is_by_name_alone: false,
         ending: ending(with_folders(photo))?,
     })
-}
-
-/// The last part of a path without what is behind its last dot.
-fn stem(name: &str) -> &str {
-    let name = last_segment(name);
-    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }

@@ -7,14 +7,14 @@ use image::RgbImage;
 use crate::camera::Camera;
 use crate::delineation::leave_out;
 use crate::fault::Fault;
+use crate::files::same_name::is_same_stem;
 use crate::flight::Flight;
 use crate::formats::photos::photo_metadata;
 use crate::formats::{FileError, MaskFile, Masks, OutlinedPhoto};
 use crate::outlines::followed::not_followed;
 use crate::outlines::named_files::{
     also_taken_by, candidates, files_below, files_of_many, folders_shared, has_folder, is_anothers,
-    is_namesake, is_of_stem, is_photo, is_told_apart, may_be_called, may_be_outlines, names, told,
-    with_photo,
+    is_namesake, is_photo, is_told_apart, may_be_called, may_be_outlines, names, told, with_photo,
 };
 use crate::outlines::turned;
 use crate::picture;
@@ -103,12 +103,12 @@ impl OutlinesOfOthers {
             Place::File(file) if file.is_of_one() => Vec::new(),
             Place::File(file) => file
                 .photos()
-                .filter(|other| of_none(&|photo| is_of_stem(photo, other)))
+                .filter(|other| of_none(&|photo| is_same_stem(photo, other)))
                 .map(str::to_owned)
                 .collect(),
             Place::OfMany(files) => (files.iter())
                 .flat_map(|(_, file)| file.photos())
-                .filter(|other| of_none(&|photo| is_of_stem(photo, other)))
+                .filter(|other| of_none(&|photo| is_same_stem(photo, other)))
                 .map(str::to_owned)
                 .collect(),
             Place::Folder(files) => files
@@ -265,6 +265,12 @@ impl OutlinesOfOthers {
         // What fragscale exports, viewers do not turn.
         let shown = if is_undistorted { 1 } else { shown };
         let mut masks = as_stored(file, &photo, shown).map_err(|fault| named(path, fault))?;
+        // Among many photos one may have none, which its sizes say.
+        if masks.labels.fragments() == 0 && is_only {
+            let what = format!("no fragment of {name} is outlined in it, only fines or background");
+            let remedy = "give its outlines, or leave the photo out";
+            return Err(named(path, Fault::new(what, remedy)));
+        }
         if let Some(other) = passed_over {
             let [taken, other] = [path, other].map(|path| self.called(path));
             masks.notes.push(format!("{taken} is taken, not {other}"));

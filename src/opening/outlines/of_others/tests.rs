@@ -362,3 +362,26 @@ fn a_file_that_names_another_photo_is_refused() {
     assert!(fault.what.ends_with(words), "{fault}");
     assert!(read("d2_A.jpg", "d1/A.jpg").is_err());
 }
+
+/// A mask of background alone is no outlines of the only photo that is asked for; among many photos one may have none.
+#[test]
+fn outlines_without_a_fragment_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("A_mask.png");
+    write_labels(&path, 0);
+    let found = |from: &Path, is_only| {
+        let others = OutlinesOfOthers::open(from, None).unwrap();
+        others.of_photo("A.jpg", &["A.jpg"], (&camera(4, 4), 1), is_only)
+    };
+    let fault = found(folder.path(), true).unwrap_err();
+    let words = "A_mask.png: no fragment of A.jpg is outlined in it, only fines or background";
+    assert!(fault.what.ends_with(words), "{fault}");
+    assert!(found(folder.path(), false).is_ok());
+    let many = folder.path().join("coco.json");
+    let images = r#"[{"id":1,"file_name":"A.jpg","width":4,"height":4}]"#;
+    let text = format!(r#"{{"images":{images},"categories":[],"annotations":[]}}"#);
+    fs::write(&many, text).unwrap();
+    assert!(found(&many, false).is_ok());
+    let fault = found(&many, true).unwrap_err();
+    assert!(fault.what.contains("only fines or background"), "{fault}");
+}
