@@ -37,7 +37,7 @@ use fragscale_core::{
 };
 use fragscale_fragmentation as fragmentation;
 
-pub use areas::{MapAreas, areas, holds_areas, read_areas};
+pub use areas::{MapAreas, areas, holds_areas, read_areas, read_rings};
 pub use candidates::Candidate;
 pub use clouds::{CloudFile, CloudPiece, CloudPieces};
 pub use detect::{CloudFormat, FAILED, Kind, MODEL, UNFINISHED, detect};

@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use glam::DVec2;
 
 use crate::fault::Fault;
-use crate::formats::{FileError, MapAreas, holds_areas, read_areas, read_places, typed_places};
-use crate::geodesy::Crs;
+use crate::formats::{
+    FileError, MapAreas, holds_areas, read_areas, read_places, read_rings, typed_places,
+};
+use crate::geodesy::{Crs, Geographic};
 use fragscale_core::survey::Polygon;
 
 /// `x,y;x,y;…`, or a file with a place a line. With what was mended of the file.
@@ -52,6 +54,44 @@ impl Areas {
         Ok(Self::InWorld(corners, said))
     }
 
+    /// The same for who only draws them: polygons may have holes.
+    ///
+    /// # Errors
+    /// As [`Areas::read`], but for holes.
+    pub fn read_to_draw(text: &str) -> Result<Self, String> {
+        let path = Path::new(text);
+        if !holds_areas(path) {
+            return Self::read(text);
+        }
+        let areas = read_rings(path).map_err(|error| error.to_string())?;
+        Ok(Self::OnEarth(path.to_owned(), areas))
+    }
+
+    /// As rings in the world to draw, those of holes, too, with what was mended. `what` they are is in front of what is wrong.
+    ///
+    /// # Errors
+    /// As [`Areas::in_world`]; of rings of a map none is refused for what no area may be.
+    pub fn rings_in_world(
+        self,
+        what: &str,
+        crs: impl FnOnce() -> Result<Crs, String>,
+    ) -> Result<(Vec<Vec<DVec2>>, Vec<String>), String> {
+        let (path, areas) = match self {
+            Self::OnEarth(path, areas) => (path, areas),
+            typed @ Self::InWorld(..) => {
+                let (polygons, said) = typed.in_world(what, crs)?;
+                let rings = polygons.iter().map(|polygon| polygon.corners().to_vec());
+                return Ok((rings.collect(), said));
+            }
+        };
+        let crs = crs()?;
+        let rings = areas.polygons.iter().chain(&areas.holes);
+        let rings = rings.map(|corners| in_system(corners, &crs));
+        let rings: Option<Vec<Vec<DVec2>>> = rings.collect();
+        let rings = rings.ok_or_else(|| off(&path, "a polygon", &crs))?;
+        Ok((rings, Vec::new()))
+    }
+
     /// What to keep out of, as polygons in the world, with what was mended; `crs` is asked for where they are on the Earth.
     ///
     /// # Errors
@@ -90,14 +130,8 @@ impl Areas {
         };
         let crs = crs()?;
         let polygons = areas.polygons.iter().zip(1..).map(|(corners, number)| {
-            let corners: Option<Vec<DVec2>> = (corners.iter())
-                .map(|place| Some(crs.from_geographic(*place)?.truncate()))
-                .collect();
-            let corners = corners.ok_or_else(|| {
-                let what = format!("polygon {number} lies where {} does not hold", crs.name());
-                let remedy = "check that it is of this place, and that longitudes come first";
-                FileError::new(&path, Fault::new(what, remedy)).to_string()
-            })?;
+            let corners = in_system(corners, &crs);
+            let corners = corners.ok_or_else(|| off(&path, &format!("polygon {number}"), &crs))?;
             Polygon::new(&corners)
                 .map_err(|error| format!("{}: polygon {number}: {error}", path.display()))
         });
@@ -125,4 +159,19 @@ impl Areas {
         let polygon = polygons.pop().ok_or_else(|| format!("{what}: none"))?;
         Ok((polygon, said))
     }
+}
+
+/// Corners in a coordinate system; `None` where it does not hold.
+fn in_system(corners: &[Geographic], crs: &Crs) -> Option<Vec<DVec2>> {
+    let corners = corners.iter();
+    corners
+        .map(|place| Some(crs.from_geographic(*place)?.truncate()))
+        .collect()
+}
+
+/// That a polygon of a file lies where a coordinate system does not hold.
+fn off(path: &Path, polygon: &str, crs: &Crs) -> String {
+    let what = format!("{polygon} lies where {} does not hold", crs.name());
+    let remedy = "check that it is of this place, and that longitudes come first";
+    FileError::new(path, Fault::new(what, remedy)).to_string()
 }

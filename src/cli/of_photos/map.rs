@@ -43,7 +43,7 @@ pub(in crate::cli) struct MapArguments {
     /// takes and writes them. Can be given several times.
     #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
     line: Vec<String>,
-    /// The same of a polygon, as 'volume' takes them; of a file of a map all that it holds.
+    /// The same of a polygon, as 'volume' takes them; of a file of a map all that it holds, with holes.
     #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
     polygon: Vec<String>,
     #[command(flatten)]
@@ -75,7 +75,10 @@ pub(in crate::cli) fn map(arguments: &MapArguments, progress: &Progress) -> Resu
     let at_output = |fault| FileError::new(output, fault).to_string();
     let format = PlanFormat::of(output).map_err(at_output)?;
     let (mut measured, mut warnings) = lines(arguments)?;
-    let polygons = arguments.polygon.iter().map(|text| Areas::read(text));
+    let polygons = arguments
+        .polygon
+        .iter()
+        .map(|text| Areas::read_to_draw(text));
     let polygons: Vec<Areas> = polygons.collect::<Result<_, String>>()?;
     // Of what is typed there is no file.
     let drawn = arguments.line.iter().chain(&arguments.polygon);
@@ -86,9 +89,9 @@ pub(in crate::cli) fn map(arguments: &MapArguments, progress: &Progress) -> Resu
     outputs.read(&opened.read)?;
     for areas in polygons {
         let crs = || arguments.flight.crs_of(None, &opened, ON_EARTH_REMEDY);
-        let (polygons, mended) = areas.in_world("--polygon", crs)?;
-        measured.extend(polygons.iter().map(|polygon| MeasuredOutline {
-            points: polygon.corners().to_vec(),
+        let (rings, mended) = areas.rings_in_world("--polygon", crs)?;
+        measured.extend(rings.into_iter().map(|points| MeasuredOutline {
+            points,
             is_polygon: true,
         }));
         warnings.extend(mended);

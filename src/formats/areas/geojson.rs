@@ -9,6 +9,7 @@ use serde_json::Value;
 use super::ring::ring;
 use super::{MapAreas, no_polygon};
 use crate::fault::Fault;
+use crate::geodesy::Geographic;
 use crate::text::fields::shown;
 use crate::text::json;
 
@@ -50,6 +51,8 @@ pub(super) fn read(text: &str) -> Result<MapAreas, Fault> {
     }
     let mut found = MapAreas {
         polygons: Vec::new(),
+        holes: Vec::new(),
+        first_hole: None,
         points: 0,
         lines: 0,
     };
@@ -101,12 +104,23 @@ impl MapAreas {
     fn polygon(&mut self, rings: &Value) -> Result<(), Fault> {
         let at = self.at();
         let rings = list(rings).ok_or_else(|| self.no_list())?;
-        if rings.len() > 1 {
+        let (outline, holes) = rings.split_first().ok_or_else(|| self.no_list())?;
+        let outline = self.ring(outline, &at)?;
+        if !holes.is_empty() && self.first_hole.is_none() {
             let what = format!("{at} has a hole");
-            return Err(Fault::new(what, "draw it without, or as two polygons"));
+            self.first_hole = Some(Fault::new(what, "draw it without, or as two polygons"));
         }
-        let outline = rings.first().and_then(list);
-        let outline = outline.ok_or_else(|| self.no_list())?;
+        for (hole, number) in holes.iter().zip(1..) {
+            let hole = self.ring(hole, &format!("{at}, hole {number}"))?;
+            self.holes.push(hole);
+        }
+        self.polygons.push(outline);
+        Ok(())
+    }
+
+    /// The corners of one ring.
+    fn ring(&self, corners: &Value, at: &str) -> Result<Vec<Geographic>, Fault> {
+        let outline = list(corners).ok_or_else(|| self.no_list())?;
         let mut positions = Vec::with_capacity(outline.len());
         for (position, number) in outline.iter().zip(1..) {
             // A third number is a height.
@@ -119,8 +133,7 @@ impl MapAreas {
                 Fault::new(what, WRONG)
             })?);
         }
-        self.polygons.push(ring(&positions, &at, None)?);
-        Ok(())
+        ring(&positions, at, None)
     }
 }
 

@@ -41,16 +41,20 @@ pub(super) fn read(xml: &str) -> Result<MapAreas, Fault> {
     if polygons.is_empty() {
         return Err(no_polygon(points, lines));
     }
-    let polygons = polygons.into_iter().zip(1..);
-    let polygons = polygons.map(|(node, number)| polygon(node, number));
-    Ok(MapAreas {
-        polygons: polygons.collect::<Result<_, Fault>>()?,
+    let mut found = MapAreas {
+        polygons: Vec::new(),
+        holes: Vec::new(),
+        first_hole: None,
         points,
         lines,
-    })
+    };
+    for (node, number) in polygons.into_iter().zip(1..) {
+        polygon(node, number, &mut found)?;
+    }
+    Ok(found)
 }
 
-fn polygon(node: Node<'_, '_>, number: usize) -> Result<Vec<Geographic>, Fault> {
+fn polygon(node: Node<'_, '_>, number: usize, found: &mut MapAreas) -> Result<(), Fault> {
     // As its owner called it.
     let placemark = node.ancestors().find(|node| node.has_tag_name("Placemark"));
     let name = placemark
@@ -61,16 +65,44 @@ fn polygon(node: Node<'_, '_>, number: usize) -> Result<Vec<Geographic>, Fault> 
         None => format!("polygon {number}"),
     };
     let line = line_of(node);
-    if children(node, "innerBoundaryIs").next().is_some() {
+    let outer = child(node, "outerBoundaryIs").and_then(|outer| child(outer, "LinearRing"));
+    found.polygons.push(corners(outer, &at, line)?);
+    let mut number = 0;
+    for inner in children(node, "innerBoundaryIs") {
         let what = format!("{at} has a hole");
-        return Err(Fault::at(line, what, "draw it without, or as two polygons"));
+        let remedy = "draw it without, or as two polygons";
+        let fault = || Fault::at(line, what, remedy);
+        found.first_hole.get_or_insert_with(fault);
+        // Of one without coordinates there is nothing to draw.
+        if !inner
+            .descendants()
+            .any(|node| node.has_tag_name("coordinates"))
+        {
+            continue;
+        }
+        // The schema has one ring a boundary, and a boundary a hole; some writers put all holes into one.
+        let mut rings = children(inner, "LinearRing").peekable();
+        if rings.peek().is_none() {
+            let at = format!("{at}, hole {}", number + 1);
+            return Err(no_coordinates(&at, line));
+        }
+        for ring in rings {
+            number += 1;
+            let at = format!("{at}, hole {number}");
+            found.holes.push(corners(Some(ring), &at, line)?);
+        }
     }
-    let outline = child(node, "outerBoundaryIs").and_then(|outer| child(outer, "LinearRing"));
+    Ok(())
+}
+
+fn no_coordinates(at: &str, line: u64) -> Fault {
+    Fault::at(line, format!("{at} has no coordinates"), EXPORT)
+}
+
+/// The corners of a ring; `line` is that of its polygon.
+fn corners(outline: Option<Node<'_, '_>>, at: &str, line: u64) -> Result<Vec<Geographic>, Fault> {
     let coordinates = outline.and_then(|ring| child(ring, "coordinates"));
-    let coordinates = coordinates.ok_or_else(|| {
-        let what = format!("{at} has no coordinates");
-        Fault::at(line, what, EXPORT)
-    })?;
+    let coordinates = coordinates.ok_or_else(|| no_coordinates(at, line))?;
     let mut positions = Vec::new();
     for (tuple, number) in text(coordinates).split_whitespace().zip(1..) {
         let mut numbers = tuple.split(',').map(|word| word.parse::<f64>().ok());
@@ -85,5 +117,5 @@ fn polygon(node: Node<'_, '_>, number: usize) -> Result<Vec<Geographic>, Fault> 
         };
         positions.push([longitude, latitude]);
     }
-    ring(&positions, &at, Some(line_of(coordinates)))
+    ring(&positions, at, Some(line_of(coordinates)))
 }

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! Both count longitude first, in degrees of WGS 84; heights, where they stand, are not read: an area is ground, with
-//! all that is above it. A polygon with a hole is refused, for who leaves the hole out plans flights over it. Points and
-//! lines beside polygons are counted: whoever asks for areas to keep out of must know of them.
+//! all that is above it. A polygon with a hole is refused, for who leaves the hole out plans flights over it; who only draws
+//! takes its rings. Points and lines beside polygons are counted: whoever asks for areas to keep out of must know of them.
 
 mod geojson;
 mod kml;
@@ -54,6 +54,10 @@ fn is_areas(head: &[u8]) -> bool {
 pub struct MapAreas {
     /// At least one, each of at least three corners, none of which is said twice in a row; heights are 0.
     pub polygons: Vec<Vec<Geographic>>,
+    /// The outlines of their holes, of the same kind.
+    pub holes: Vec<Vec<Geographic>>,
+    /// What is wrong with the first polygon that has one, for whom an area is ground.
+    first_hole: Option<Fault>,
     /// Points beside them.
     pub points: usize,
     /// Lines and paths beside them.
@@ -64,6 +68,14 @@ impl MapAreas {
     /// What there is beside the polygons, in words; `None` where there is nothing.
     pub fn others(&self) -> Option<String> {
         (self.points + self.lines > 0).then(|| others(self.points, self.lines))
+    }
+
+    /// Itself, where none of its polygons has a hole.
+    fn without_holes(self) -> Result<Self, Fault> {
+        match self.first_hole {
+            Some(fault) => Err(fault),
+            None => Ok(self),
+        }
     }
 }
 
@@ -85,8 +97,17 @@ fn others(points: usize, lines: usize) -> String {
 /// With the file and the place in it: what holds no polygon, one with a hole, corners that are no degrees or that have
 /// latitude first, another coordinate system than WGS 84.
 pub fn read_areas(path: &Path) -> Result<MapAreas, FileError> {
+    let at = |fault| FileError::new(path, fault);
+    read_rings(path)?.without_holes().map_err(at)
+}
+
+/// Reads the polygons of a file with their holes, for who draws them.
+///
+/// # Errors
+/// As [`read_areas`], but for holes.
+pub fn read_rings(path: &Path) -> Result<MapAreas, FileError> {
     let bytes = read_small(path, LARGEST, "areas", KNOWN)?;
-    areas(&bytes).map_err(|fault| FileError::new(path, fault))
+    rings(&bytes).map_err(|fault| FileError::new(path, fault))
 }
 
 /// The same from the bytes of a file.
@@ -94,6 +115,10 @@ pub fn read_areas(path: &Path) -> Result<MapAreas, FileError> {
 /// # Errors
 /// As [`read_areas`], without the file.
 pub fn areas(bytes: &[u8]) -> Result<MapAreas, Fault> {
+    rings(bytes)?.without_holes()
+}
+
+fn rings(bytes: &[u8]) -> Result<MapAreas, Fault> {
     if bytes.starts_with(b"PK") {
         return kml::read(&kml_of_zip(bytes)?);
     }

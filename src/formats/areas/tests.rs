@@ -125,6 +125,41 @@ fn lists_of_places_are_no_areas() {
     }
 }
 
+/// Who draws a polygon takes its hole, too; for whom it is ground it is refused.
+#[test]
+fn holes_are_for_who_draws() {
+    let ring = "[[8,48],[9,48],[9,49],[8,48]]";
+    let hole = "[[8.5,48.1],[8.8,48.1],[8.8,48.4],[8.5,48.1]]";
+    let text = format!("{{\"type\":\"Polygon\",\"coordinates\":[{ring},{hole}]}}");
+    let corners = [[8.5, 48.1], [8.8, 48.1], [8.8, 48.4]];
+    let found = rings(text.as_bytes()).unwrap();
+    assert_eq!(found.polygons.len(), 1);
+    assert_eq!(degrees(&found.holes), [corners.to_vec()]);
+    assert!(areas(text.as_bytes()).is_err());
+    let inner = "<innerBoundaryIs><LinearRing><coordinates>8.5,48.1 8.8,48.1 8.8,48.4</coordinates></LinearRing></innerBoundaryIs>";
+    let end = "</outerBoundaryIs>";
+    let kml = EARTH.replace(end, &format!("{end}{inner}"));
+    let found = rings(kml.as_bytes()).unwrap();
+    assert_eq!(degrees(&found.polygons), [CORNERS.to_vec()]);
+    assert_eq!(degrees(&found.holes), [corners.to_vec()]);
+    // Several rings in one boundary, as some write them.
+    let second = "<LinearRing><coordinates>8.1,48.1 8.2,48.1 8.2,48.2</coordinates></LinearRing></innerBoundaryIs>";
+    let both = inner.replace("</innerBoundaryIs>", second);
+    let kml = EARTH.replace(end, &format!("{end}{both}"));
+    let found = rings(kml.as_bytes()).unwrap();
+    let others = vec![[8.1, 48.1], [8.2, 48.1], [8.2, 48.2]];
+    assert_eq!(degrees(&found.holes), [corners.to_vec(), others]);
+    assert!(areas(kml.as_bytes()).is_err());
+    // One without coordinates beside one with them is said.
+    let broken = inner.replace("</innerBoundaryIs>", "<LinearRing/></innerBoundaryIs>");
+    let kml = EARTH.replace(end, &format!("{end}{broken}"));
+    let fault = rings(kml.as_bytes()).unwrap_err();
+    assert_eq!(
+        fault.what,
+        "polygon 1 ('Bench 7'), hole 2 has no coordinates"
+    );
+}
+
 /// One line with the place, what is wrong and what to do.
 #[test]
 fn what_is_no_area_is_said() {
