@@ -1,15 +1,16 @@
 //! Many flights, one after the other or several at once.
 //!
 //! ```text
-//! season     which flights, which steps: SEASON.toml, folders
-//! asked      the steps with their options, the same words as on the command line
-//! told       what the process of one flight is told, and what it says
-//! record     what was read and written of a flight: whether it has to be done again
-//! memory     how much memory a flight takes, and how much there is
-//! schedule   which flight begins next
-//! running    the processes; what comes of each
-//! results    the tables of a season, written
-//! watch      flights that arrive while one looks on
+//! season      which flights, which steps: SEASON.toml, folders
+//! asked       the steps with their options, the same words as on the command line
+//! told        what the process of one flight is told, and what it says
+//! record      what was read and written of a flight: whether it has to be done again
+//! memory      how much memory a flight takes, and how much there is
+//! schedule    which flight begins next
+//! running     the processes; what comes of each
+//! results     the tables of a season, written
+//! taken_away  what of earlier runs is gone, in words
+//! watch       flights that arrive while one looks on
 //! ```
 //!
 //! Each flight is done by a process of its own, `fragscale` with a hidden command: what breaks one flight (no memory
@@ -27,6 +28,7 @@ mod results;
 mod running;
 mod schedule;
 mod season;
+mod taken_away;
 mod told;
 mod watch;
 
@@ -40,5 +42,6 @@ pub use record::{Record, remove_unfinished_below, remove_what_is_left};
 pub use results::{ResultsFolder, notes_on_results, write_results};
 pub use running::{BatchOptions, Ended, Event, FLIGHT_COMMAND, Outcome, run};
 pub use season::{Found, Season, SeasonFlight};
+pub use taken_away::TakenAway;
 pub use told::{FlightDone, FlightTold, SaidLine};
 pub use watch::{Arrivals, Seen};

@@ -162,15 +162,20 @@ type Work = Box<dyn FnOnce(&Progress) -> Result<Answer, String> + Send>;
 pub fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(error) if !error.use_stderr() => return print(&error.to_string()),
+        Err(error) if !error.use_stderr() => {
+            // The help of all commands is no answer to one that is not there.
+            return match usage::unknown_word() {
+                Some(what) => not_understood(&what),
+                None => print(&error.to_string()),
+            };
+        }
         Err(error) => {
             let mut what =
                 usage::unknown_command().unwrap_or_else(|| usage::in_one_line(&error.to_string()));
             if let Some(tip) = usage::folder_called_like_a_command() {
                 what = format!("{tip}; as a command: {what}");
             }
-            say(&format!("error: {what}"));
-            return ExitCode::from(2);
+            return not_understood(&what);
         }
     };
     match &arguments.command {
@@ -264,8 +269,7 @@ pub fn run() -> ExitCode {
 #[cfg(feature = "app")]
 fn window(flight: Vec<std::path::PathBuf>) -> ExitCode {
     if let Some(what) = usage::unknown_command() {
-        say(&format!("error: {what}"));
-        return ExitCode::from(2);
+        return not_understood(&what);
     }
     let ran = crate::app::run(flight);
     // What was being written when the window closed is not finished.
@@ -294,6 +298,12 @@ fn print(text: &str) -> ExitCode {
 fn fail(message: &str) -> ExitCode {
     say(&format!("error: {message}"));
     ExitCode::from(1)
+}
+
+/// The command line could not be understood.
+fn not_understood(what: &str) -> ExitCode {
+    say(&format!("error: {what}"));
+    ExitCode::from(2)
 }
 
 /// A line on standard error. Where even that is closed, the exit status is all that is left.

@@ -8,22 +8,57 @@ use clap::CommandFactory;
 use super::Arguments;
 use crate::fault::one_line;
 
+/// What people call what a command does, and that command: words that are not like its name.
+const CALLED: [(&str, &str); 8] = [
+    ("season", "batch"),
+    ("seasons", "batch"),
+    ("blasts", "batch"),
+    ("fragments", "delineate"),
+    ("segment", "delineate"),
+    ("sizes", "psd"),
+    ("simulate", "sample"),
+    ("draw", "render"),
+];
+
+/// How alike two words are, 0 to 1, of which one may be meant by the other.
+const ALIKE: f64 = 0.8;
+
+/// The command that is meant by a word that is none.
+fn meant<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
+    let word = word.to_ascii_lowercase();
+    let called = CALLED.iter().find(|(called, _)| *called == word);
+    if let Some((_, command)) = called {
+        return names.iter().copied().find(|name| name == command);
+    }
+    let likeness = |name: &&str| strsim::jaro_winkler(&word, name);
+    let nearest = names
+        .iter()
+        .copied()
+        .max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+    nearest.filter(|name| likeness(name) > ALIKE)
+}
+
+/// The same as [`unknown_command`] of a word without a path or an ending: who asks for help with that means a command.
+pub(super) fn unknown_word() -> Option<String> {
+    let word = std::env::args_os().nth(1)?;
+    let is_of_name = |letter: char| letter.is_alphanumeric() || matches!(letter, '-' | '_');
+    let is_word = word.to_string_lossy().chars().all(is_of_name);
+    is_word.then(unknown_command).flatten()
+}
+
 /// Where the first word is neither a command nor a file that is there, what it could have meant:
 /// clap takes it for a flight and stumbles over the second word.
 pub(super) fn unknown_command() -> Option<String> {
     let word = std::env::args_os().nth(1)?;
     let text = word.to_string_lossy();
     let arguments = Arguments::command();
-    let names: Vec<&str> = arguments.get_subcommands().map(|c| c.get_name()).collect();
+    let mut names: Vec<&str> = arguments.get_subcommands().map(|c| c.get_name()).collect();
+    // clap's own.
+    names.push("help");
     if text.starts_with('-') || names.contains(&text.as_ref()) || Path::new(&word).exists() {
         return None;
     }
-    let likeness = |name: &&str| strsim::jaro_winkler(&text, name);
-    let nearest = names
-        .into_iter()
-        .max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
-        .filter(|name| likeness(name) > 0.8);
-    let tip = nearest.map_or_else(String::new, |name| format!(" (perhaps '{name}')"));
+    let tip = meant(&text, &names).map_or_else(String::new, |name| format!(" (perhaps '{name}')"));
     Some(one_line(&format!(
         "'{text}' is neither a command{tip} nor a file or folder; see 'fragscale --help'"
     )))
@@ -97,6 +132,25 @@ mod tests {
     use clap::Parser;
 
     use super::*;
+
+    /// Every word that stands for a command does so, and is none itself.
+    #[test]
+    fn what_a_command_is_called_otherwise_is_understood() {
+        let arguments = Arguments::command();
+        let mut names: Vec<&str> = arguments.get_subcommands().map(|c| c.get_name()).collect();
+        // The command line without a window draws no pictures.
+        if !names.contains(&"render") {
+            names.push("render");
+        }
+        for (called, command) in CALLED {
+            assert!(!names.contains(&called), "{called}");
+            assert_eq!(meant(called, &names), Some(command));
+        }
+        assert_eq!(meant("Fragments", &names), Some("delineate"));
+        assert_eq!(meant("PSD", &names), Some("psd"));
+        assert_eq!(meant("scails", &names), Some("scales"));
+        assert_eq!(meant("quarry", &names), None);
+    }
 
     #[test]
     fn usage_errors_are_one_line() {

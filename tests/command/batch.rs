@@ -376,6 +376,8 @@ fn a_blast_that_nobody_sieved_is_done() {
         sized("[delineate]\nengine = \"classical\"\n[[flight]]\npath = \"a\"\n");
     let root = root.path();
     assert_eq!(status, 0, "{text}");
+    let said = "warning: psd is passed over for all flights: no reference is named";
+    assert_eq!(text.matches(said).count(), 1, "{text}");
     let report = fs::read_to_string(root.join("out/season.html")).expect("a report");
     assert!(
         report.contains("psd: no reference is named for it"),
@@ -895,4 +897,14 @@ fn outlines_of_a_run_before_stay() {
     assert_eq!(before.expect("a time"), after.expect("a time"));
     let record = fs::read_to_string(root.join("out/a/flight.json")).expect("a record");
     assert!(record.contains("IMG_0001_labels.png"), "{record}");
+}
+
+/// Who does fewer steps than before knows beforehand what becomes of the results of the others.
+#[test]
+fn help_says_what_is_taken_away() {
+    let output = fragscale(&["batch", "--help"]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let said = "results of steps that are not among these are taken away";
+    assert!(words.join(" ").contains(said), "{text}");
 }

@@ -389,6 +389,34 @@ fn a_mistyped_command_is_recognised() {
     );
 }
 
+/// The help of all commands is no answer to one that is not there: a chapter of the manual is called so.
+#[cfg(feature = "app")]
+#[test]
+fn help_for_no_command_says_so() {
+    for help in ["--help", "-h"] {
+        let output = fragscale(&["season", help]);
+        let stderr = String::from_utf8(output.stderr).expect("UTF-8");
+        assert_eq!(output.status.code(), Some(2), "{stderr}");
+        assert!(
+            stderr.contains("'season' is neither a command (perhaps 'batch')"),
+            "{stderr}"
+        );
+        assert!(output.stdout.is_empty());
+    }
+    // clap's own word for it.
+    let output = fragscale(&["help", "season"]);
+    let stderr = String::from_utf8(output.stderr).expect("UTF-8");
+    assert!(!stderr.contains("'help' is neither"), "{stderr}");
+    for words in [
+        &["help"][..],
+        &["help", "batch"],
+        &["batch", "--help"],
+        &["--help"],
+    ] {
+        assert_eq!(fragscale(words).status.code(), Some(0), "{words:?}");
+    }
+}
+
 /// A flight's folder that is called like a command: how it is opened is told.
 #[cfg(feature = "app")]
 #[test]

@@ -16,7 +16,7 @@ mod pattern;
 
 use std::path::{Path, PathBuf};
 
-use crate::asked::Asked;
+use crate::asked::{Asked, Step};
 use crate::fault::{Fault, first_names};
 use crate::files::{FileError, read_text};
 use crate::flight::Date;
@@ -258,8 +258,32 @@ impl Season {
                     .push(format!("{many} {what}s {of_many}: {names}")),
             }
         }
+        found.notes.extend(self.without_reference(&found.flights));
         naming::refuse_twins(&found.flights)?;
         Ok(found)
+    }
+
+    /// That psd is passed over, and for whom: nobody says what their sizes are held against.
+    fn without_reference(&self, flights: &[SeasonFlight]) -> Option<String> {
+        let mut steps = self.asked.steps.iter();
+        let psd = steps.find(|asked| asked.step == Step::Psd)?;
+        if psd.options.contains_key("reference") {
+            return None;
+        }
+        let without = flights.iter().filter(|flight| flight.reference.is_none());
+        let names: Vec<&str> = without.map(|flight| flight.blast.as_str()).collect();
+        let of = match names.len() {
+            0 => return None,
+            count if count == flights.len() => "all flights".to_owned(),
+            count => {
+                let of = format!("{count} of {} flights", flights.len());
+                format!("{of} ({})", first_names(names))
+            }
+        };
+        Some(format!(
+            "psd is passed over for {of}: no reference is named for them (in SEASON.toml as reference of [psd] or of a \
+             [[flight]], or on the command line: --set psd.reference=FILE)"
+        ))
     }
 }
 

@@ -1,7 +1,7 @@
 use std::fs;
 
 use super::*;
-use crate::asked::{OptionKind, Step};
+use crate::asked::OptionKind;
 
 const SEASON: &str = r#"format = 1
 name = "North"
@@ -398,4 +398,35 @@ fn the_header_is_an_example() {
     let text: Vec<&str> = block.map(str::trim_start).collect();
     let season = parsed(&text.join("\n")).unwrap();
     assert_eq!(season.name, "North pit 2026");
+}
+
+/// Without a reference nothing comes of psd, which is said before the hours that the rest may take.
+#[test]
+fn flights_without_a_reference_are_said() {
+    let flight = |blast: &str, reference: Option<&str>| SeasonFlight {
+        blast: blast.to_owned(),
+        date: None,
+        path: PathBuf::from(blast),
+        surface: None,
+        photos: None,
+        reference: reference.map(PathBuf::from),
+        results: blast.to_owned(),
+    };
+    let (sieved, alone) = (flight("a", Some("a.csv")), flight("b", None));
+    let season = |text: &str| parsed(&format!("format = 1\n{text}")).unwrap();
+    let psd = "steps = [\"delineate\", \"psd\"]\n[[flight]]\npath = \"x\"\n";
+    let said = |text: &str, flights: &[SeasonFlight]| season(text).without_reference(flights);
+    let of_all = said(psd, std::slice::from_ref(&alone)).unwrap();
+    assert!(
+        of_all.starts_with("psd is passed over for all flights: no reference"),
+        "{of_all}"
+    );
+    let of_one = said(psd, &[sieved.clone(), alone.clone()]).unwrap();
+    assert!(of_one.contains("for 1 of 2 flights (b): "), "{of_one}");
+    assert_eq!(said(psd, &[sieved]), None);
+    assert_eq!(said(psd, &[]), None);
+    let of_season = format!("{psd}[psd]\nreference = \"s.csv\"\n");
+    assert_eq!(said(&of_season, std::slice::from_ref(&alone)), None);
+    let without = "steps = [\"delineate\"]\n[[flight]]\npath = \"x\"\n";
+    assert_eq!(said(without, &[alone]), None);
 }

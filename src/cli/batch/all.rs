@@ -1,7 +1,7 @@
 //! All flights of a season: one line of progress for each, the tables, the exit status.
 
 use std::cell::{Cell, RefCell};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use super::arguments::{BatchArguments, BatchFormat, Refused};
 use crate::batch::{
     Arrivals, BatchOptions, Ended, Event, Outcome, ResultsFolder, Season, SeasonFlight, Seen,
-    notes_on_results, run, write_results,
+    TakenAway, notes_on_results, run, write_results,
 };
 use crate::cli::{fail, interrupt, print, say};
 use crate::exports::{SeasonRow, season_json_line, size_text};
@@ -192,7 +192,7 @@ impl Batch {
     fn run(&self, flights: &[SeasonFlight], progress: &Progress) -> Result<Vec<Ended>, String> {
         let all = flights.len();
         let done = Cell::new(0);
-        let away = RefCell::new(TakenAway::new());
+        let away = RefCell::new(TakenAway::default());
         let on_event = |event: Event<'_>| match event {
             Event::Begun(_) | Event::At(..) => {}
             Event::TakenBack(flight) => {
@@ -203,7 +203,7 @@ impl Batch {
             }
             Event::Ended(ended) => {
                 done.set(done.get() + 1);
-                add_taken_away(&mut away.borrow_mut(), ended);
+                away.borrow_mut().add(&ended.taken_away);
                 say(&format!("[{}/{all}] {}", done.get(), self.line(ended)));
                 if self.format == BatchFormat::Jsonl
                     && let Ok(line) = season_json_line(&ended.row, self.unit)
@@ -220,8 +220,7 @@ impl Batch {
             progress,
         );
         // Also where it was interrupted: what finished flights took away is gone.
-        let lines = taken_away(away.into_inner());
-        lines.iter().for_each(|line| say(line));
+        away.borrow().lines().for_each(|line| say(&line));
         ended.map_err(|fault| fault.to_string())
     }
 
@@ -257,32 +256,4 @@ impl Batch {
         let written = write_results(to, &self.season.name, self.unit, rows, notes, force);
         written.map_err(|error| error.to_string())
     }
-}
-
-/// Of each file or folder of earlier runs that is gone: of how many flights, and how many files.
-type TakenAway = BTreeMap<String, (usize, usize)>;
-
-fn add_taken_away(all: &mut TakenAway, ended: &Ended) {
-    for (kind, files) in &ended.taken_away {
-        let (flights, all_files) = all.entry(kind.clone()).or_default();
-        *flights += 1;
-        *all_files += files;
-    }
-}
-
-/// What of earlier runs is gone, a line for each file or folder, with how many flights it was of.
-fn taken_away(all: TakenAway) -> Vec<String> {
-    let lines = all.into_iter().map(|(kind, (flights, files))| {
-        let files = match (kind.ends_with('/'), files) {
-            (false, _) => String::new(),
-            (true, 1) => " (1 file)".to_owned(),
-            (true, files) => format!(" ({files} files)"),
-        };
-        let flights = match flights {
-            1 => "1 flight".to_owned(),
-            flights => format!("{flights} flights"),
-        };
-        format!("taken away: {kind}{files} of {flights}, which an earlier run wrote and this one does not")
-    });
-    lines.collect()
 }

@@ -20,7 +20,8 @@ pub(in crate::cli) struct BatchArguments {
     /// beside them; new, or that of an earlier run, which goes on.
     #[arg(long, value_name = "DIR")]
     to: Option<PathBuf>,
-    /// What is done with every flight, separated by commas; without it what SEASON.toml says, else scales and check.
+    /// What is done with every flight, separated by commas; without it what SEASON.toml says, else scales and check. In the
+    /// folder of an earlier run the results of steps that are not among these are taken away.
     #[arg(long, value_enum, value_delimiter = ',', value_name = "STEPS")]
     steps: Vec<StepName>,
     /// Lengths and scales are in this unit; without it what SEASON.toml says, else cm.
