@@ -233,6 +233,7 @@ impl State {
             | Command::FilterDoubtful(_)
             | Command::View(_)
             | Command::ToggleMeasure
+            | Command::MeasureAnew
             | Command::Survey(_)
             | Command::Beside(_)
             | Command::Clip(_)

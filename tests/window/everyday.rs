@@ -122,7 +122,7 @@ fn panels_are_put_away_and_come_back() {
     // By the menu too.
     desk.harness.query_menu("View").click();
     desk.settle();
-    // The window is lower than this menu.
+    // Where the window is lower than this menu.
     desk.harness.query_menu("Photo and settings").scroll_to_me();
     desk.settle();
     desk.harness.query_menu("Photo and settings").click();
@@ -149,6 +149,24 @@ fn a_long_menu_scrolls_in_a_low_window() {
         desk.harness.ctx.options(|options| options.theme_preference),
         egui::ThemePreference::Light
     );
+}
+
+/// In a usual window nothing of it is below the edge, and what turns the view is one menu further.
+#[test]
+fn the_longest_menu_is_whole_in_a_window_of_720_points() {
+    let mut desk = desk_of_size([1280.0, 720.0], "tests/windrow");
+    desk.settle();
+    desk.harness.query_menu("View").click();
+    desk.settle();
+    // One more is below it.
+    let last = desk.harness.query_menu("Theme").rect();
+    assert!(last.max.y + last.height() < 720.0, "{last}");
+    let before = desk.open().looking.orbit.yaw;
+    desk.harness.query_menu("Turn").click();
+    desk.settle();
+    desk.harness.query_menu("Turn to the left").click();
+    desk.settle();
+    assert_ne!(desk.open().looking.orbit.yaw, before);
 }
 
 /// A button of the menu, whose name has its keys behind it.

@@ -16,7 +16,7 @@ use fragscale::split_mix::SplitMix;
 use fragscale::surface::UpAxis;
 use fragscale::units::LengthUnit;
 
-use crate::desk::{Desk, copy, copy_files, flight};
+use crate::desk::{Desk, Written, copy, copy_files, flight};
 use crate::{own_frame, wrong_pile};
 
 fn finding(desk: &Desk, item: HealthItem) -> &HealthFinding {
@@ -89,7 +89,7 @@ fn the_sample_is_well_but_for_its_hole() {
     assert!(!desk.shows(Role::Status, &label), "it is put away");
 }
 
-/// Until the colours of all photos are compared, nothing is said of them that reads as final.
+/// Until the colours of all photos are compared, nothing is said of them that reads as final, and none is trusted for good.
 #[test]
 fn colours_that_are_being_compared_are_pending() {
     let mut desk = Desk::new(None);
@@ -97,6 +97,8 @@ fn colours_that_are_being_compared_are_pending() {
     desk.harness.state_mut().apply(open);
     let start = Instant::now();
     let mut was_pending = false;
+    // In the tool bar and in the table.
+    let is_trusted = |w: &Written| w.text.starts_with('✔') && w.text.ends_with("trust");
     loop {
         desk.harness.step();
         let state = desk.harness.state().state();
@@ -113,11 +115,13 @@ fn colours_that_are_being_compared_are_pending() {
         if let Some(said) = said.filter(|_| state.work.is_running(Task::THUMBNAILS)) {
             was_pending |= said.contains("are still being compared");
             assert!(!said.contains("so far"), "{said}");
+            assert!(!desk.written().iter().any(is_trusted));
         }
         std::thread::sleep(Duration::from_millis(2));
     }
     assert!(was_pending);
     desk.settle();
+    assert!(desk.written().iter().any(is_trusted));
     assert_eq!(finding(&desk, HealthItem::Colours).short, "same");
     let label = format!("Colours: {}", finding(&desk, HealthItem::Colours).says);
     assert!(desk.shows(Role::Status, &label));

@@ -207,4 +207,12 @@ fn a_mission_is_compared_with_the_flight_on_the_screen() {
     assert!(desk.open().planning.flown.is_none());
     desk.fill("Mission's file", path("m.plan").to_str().expect("a path"));
     assert!(desk.open().planning.flown.is_some());
+    // The mission says its own take-off: nobody gave that of the plan on the screen for it.
+    desk.click(Role::Button, "Close");
+    desk.fill("Take-off", "450050,5400040");
+    let now = desk.open().planning.now().expect("asked");
+    assert_eq!(now.take_off, Some(DVec2::new(450_050.0, 5_400_040.0)));
+    drop_on(&mut desk, &[&path("m.plan")]);
+    let again = desk.open().planning.flown.clone().expect("a comparison");
+    assert_eq!(again.compared, compared.compared);
 }

@@ -99,7 +99,7 @@ fn trace(dice: &mut Dice) -> Trace {
         2 | 3 => Trace::Begin(kind),
         4..=8 => Trace::Add(pixel(dice)),
         9 => Trace::Move(dice.below(5), pixel(dice)),
-        10 => Trace::RemoveLast,
+        10 => dice.one_of(&[Trace::RemoveLast, Trace::RemoveAll]),
         _ => dice.one_of(&[Trace::Finish, Trace::GiveUp]),
     }
 }
@@ -278,11 +278,12 @@ fn survey_step(dice: &mut Dice) -> SurveyStep {
         BaseChoice::Height(0.1),
         BaseChoice::Height(f64::NAN),
     ];
-    match dice.below(6) {
+    match dice.below(7) {
         0 | 1 => SurveyStep::Toggle(dice.one_of(&tools)),
         2 => SurveyStep::RemoveLast,
         3 => SurveyStep::Finish,
         4 => SurveyStep::Base(dice.one_of(&bases)),
+        5 => SurveyStep::RemoveAll,
         _ => SurveyStep::Leave,
     }
 }

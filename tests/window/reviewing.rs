@@ -239,6 +239,38 @@ fn what_is_left_out_counts_alike_in_tool_bar_and_review() {
     assert!(desk.says(said), "{:?}", desk.texts());
 }
 
+/// A photo that she has accepted stays one of those when nothing speaks against it any more.
+#[test]
+fn an_accepted_photo_that_is_trusted_now_counts_as_accepted() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.harness.state_mut().apply(Command::Limits(strict()));
+    desk.settle();
+    // Under the usual limits nothing speaks against it.
+    desk.click(Role::Tab, "Review");
+    desk.click(Role::Row, "Photo IMG_0001.jpg");
+    desk.click(Role::Button, "Accept the reviewed photo");
+    assert_eq!(decision(&desk, 0), Some(DecisionKind::Accepted));
+    assert_eq!(desk.open().review.count_of(Verdict::Accepted), 1);
+    let usual = Command::Limits(Limits::default());
+    desk.harness.state_mut().apply(usual);
+    desk.settle();
+    assert_eq!(desk.open().review.count_of(Verdict::Accepted), 0);
+    // More than in the tool bar, which is explained.
+    let texts = desk.texts();
+    let mut counts = texts
+        .iter()
+        .filter(|(text, _)| text.ends_with("1 accepted, 0 left out"));
+    let (_, place) = counts.next().expect("the counts");
+    desk.harness.hover_at(place.center() - egui::vec2(2.0, 0.0));
+    desk.harness.step();
+    desk.harness.hover_at(place.center());
+    for _ in 0..60 {
+        desk.harness.step();
+    }
+    let why = "1 of the accepted photos counts as trusted in the tool bar";
+    assert!(desk.says(why), "{:?}", desk.texts());
+}
+
 /// The corner that is meant is in the middle of the view, and near: the rest of the pile is not.
 #[test]
 fn the_view_goes_to_the_corner_that_is_meant() {

@@ -210,6 +210,9 @@ fn points_are_taken_back_moved_and_given_up() {
         "{moved}"
     );
     assert_eq!((&after[..2], &after[3..]), (&before[..2], &before[3..]));
+    // The points go first, then the tool.
+    desk.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(count(&desk), Some(0));
     desk.press(Modifiers::NONE, Key::Escape);
     assert_eq!(count(&desk), None);
     assert!(objects(&desk).is_empty() && !desk.open().is_changed());

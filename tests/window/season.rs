@@ -101,6 +101,84 @@ fn a_season_is_listed_done_and_opened() {
     assert_eq!(desk.harness.state().state().asking, None);
 }
 
+/// What `fragscale batch` says of these flights, with these steps.
+fn batch(flights: &Path, steps: &str, to: &Path) -> String {
+    let ended = Process::new(PROGRAM)
+        .arg("batch")
+        .arg(flights)
+        .args(["--steps", steps, "--to"])
+        .arg(to)
+        .output()
+        .expect("it starts");
+    String::from_utf8_lossy(&ended.stderr).into_owned()
+}
+
+/// What an earlier run wrote and this one does not is gone, which the small window says in the words of the command.
+#[test]
+fn what_a_season_takes_away_is_said() {
+    let (root, flights) = season();
+    let to = root.path().join("2026 results");
+    let by_command = root.path().join("by command");
+    for folder in [&to, &by_command] {
+        batch(&flights, "scales,check", folder);
+        assert!(folder.join("05-01/check.txt").is_file());
+    }
+    let mut desk = Desk::new(None);
+    with_season(&mut desk, &flights);
+    desk.click(Role::CheckBox, "Step check");
+    desk.click(Role::Button, "Start season");
+    assert!(!to.join("05-01/check.txt").exists());
+    let away = &desk.harness.state().state().season.taken_away;
+    let said: Vec<String> = away.lines().collect();
+    assert!(!said.is_empty());
+    let of_command = batch(&flights, "scales", &by_command);
+    let of_command: Vec<&str> = of_command
+        .lines()
+        .filter(|line| line.contains("taken away: "))
+        .collect();
+    assert_eq!(said.len(), of_command.len(), "{of_command:?}");
+    for (line, of_command) in said.iter().zip(of_command) {
+        assert!(of_command.ends_with(line), "{line} | {of_command}");
+        assert!(desk.says(line) && desk.logged(line), "{:?}", desk.texts());
+    }
+    // Nothing is taken away twice.
+    desk.click(Role::Button, "Start season");
+    assert!(!desk.says("taken away: "));
+}
+
+/// Whether the box of psd says these words once the mouse rests on it.
+fn psd_says(desk: &mut Desk, words: &str) -> bool {
+    let place = desk.node(Role::CheckBox, "Step psd").rect().center();
+    // What was clicked or typed on is left first.
+    desk.harness.hover_at(place - egui::vec2(2.0, 0.0));
+    desk.harness.step();
+    desk.harness.hover_at(place);
+    for _ in 0..60 {
+        desk.harness.step();
+    }
+    desk.says(words)
+}
+
+/// A reference is named in SEASON.toml alone: where no flight has one, nobody chooses psd unwarned.
+#[test]
+fn the_box_of_psd_says_where_no_flight_has_a_reference() {
+    let (root, flights) = season();
+    let mut desk = Desk::new(None);
+    with_season(&mut desk, &flights);
+    let said = "No flight found has a reference";
+    assert!(psd_says(&mut desk, said), "{:?}", desk.texts());
+    let file = root.path().join("season.toml");
+    let text = "format = 1\n[[flight]]\npath = \"2026/05-01\"\nreference = \"sieve.csv\"\n";
+    fs::write(&file, text).expect("written");
+    desk.fill(
+        "SEASON.toml or folder of flights",
+        file.to_str().expect("UTF-8"),
+    );
+    assert_eq!(states(&desk), ["waiting"]);
+    assert!(psd_says(&mut desk, "held against a reference"));
+    assert!(!desk.says(said));
+}
+
 #[test]
 fn what_is_no_season_is_said() {
     let (root, _flights) = season();

@@ -2,8 +2,9 @@
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
-use fragscale::app::Command;
+use egui_kittest::Harness;
 use fragscale::app::open_flight::survey::{BaseChoice, SurveyStep, SurveyTool};
+use fragscale::app::{App, Command};
 use glam::DVec3;
 
 use crate::desk::{Desk, flight};
@@ -89,8 +90,40 @@ fn a_profile_is_drawn_and_measured() {
             .map(|drawn| drawn.points.len())
     };
     assert_eq!(points(&desk), Some(1));
+    // What is begun goes first, then the tool.
+    desk.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(points(&desk), Some(0));
     desk.press(Modifiers::NONE, Key::Escape);
     assert_eq!(points(&desk), None);
+}
+
+/// The plot opens at the viewport's lower edge, below the line, where there is room.
+#[test]
+fn a_finished_profile_does_not_lie_under_its_plot() {
+    let path = flight("tests/windrow");
+    let harness = Harness::builder()
+        .with_size([1600.0, 1300.0])
+        .with_max_steps(30)
+        .build_eframe(|context| App::new(context, vec![path]));
+    let mut desk = Desk { harness };
+    desk.settle();
+    desk.press(Modifiers::NONE, Key::F2);
+    desk.press(Modifiers::NONE, Key::T);
+    desk.click(Role::Button, "Profile along a line");
+    let ends = [on_windrow(-0.6, 0.1), on_windrow(0.2, 0.1)];
+    for end in ends {
+        click(&mut desk, end);
+    }
+    desk.press(Modifiers::NONE, Key::Enter);
+    let window = desk.node(Role::Window, "Profile").rect();
+    let place = desk.viewport();
+    assert!(place.expand(0.5).contains_rect(window), "{window} {place}");
+    let aside = (window.center().x - place.center().x).abs();
+    assert!(aside < 60.0, "{window} {place}");
+    for end in ends {
+        let at = on_screen(&desk, &desk.open().looking.orbit.view(), end);
+        assert!(!window.contains(at), "{at} in {window}");
+    }
 }
 
 #[test]
@@ -159,10 +192,22 @@ fn a_volume_is_drawn_and_measured() {
     assert_eq!(corners(&desk), Some(4));
     let drawn = desk.open().pointer.drawn.as_ref().expect("a tool");
     assert!(drawn.finished && drawn.volume().is_some());
+    // Escape takes back what was begun, all of it: the finished one is there again, and goes with its tool.
+    for (x, y) in [(-0.2, -0.2), (0.1, -0.2)] {
+        click(&mut desk, on_windrow(x, y));
+    }
+    assert_eq!(corners(&desk), Some(2));
+    desk.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(corners(&desk), Some(4));
+    desk.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(corners(&desk), None);
+    desk.press(Modifiers::NONE, Key::V);
+    assert_eq!(corners(&desk), Some(4));
     // One that is not finished goes with its tool.
     click(&mut desk, on_windrow(-0.2, -0.2));
-    desk.press(Modifiers::NONE, Key::Escape);
-    desk.press(Modifiers::NONE, Key::V);
+    for _ in 0..2 {
+        desk.press(Modifiers::NONE, Key::V);
+    }
     assert_eq!(corners(&desk), Some(0));
 }
 

@@ -260,6 +260,14 @@ fn the_distance_of_two_known_points_is_measured() {
     assert_eq!(desk.selected(), before, "these clicks select nothing");
     desk.press(Modifiers::NONE, Key::M);
     assert_eq!(desk.open().pointer.measure, Measure::Off);
+    // Escape takes the first point back, then the tool.
+    desk.press(Modifiers::NONE, Key::M);
+    desk.click_at(at);
+    assert!(matches!(desk.open().pointer.measure, Measure::Second(_)));
+    desk.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(desk.open().pointer.measure, Measure::First);
+    desk.press(Modifiers::NONE, Key::Escape);
+    assert_eq!(desk.open().pointer.measure, Measure::Off);
 }
 
 #[test]

@@ -118,13 +118,14 @@ actions! {
     }
     LEAVE {
         label: "Leave tracing, measuring, the camera or the review",
-        hover: "Give up tracing, else stop measuring, else leave the camera, the photo view, the review",
+        hover: "Take back what is begun with a tool, else put the tool away, else leave the camera, the photo view, the review",
         shortcut: keys(Modifiers::NONE, Key::Escape),
         command: |state| {
             // It closes the small window first.
             let open = state.open.as_ref().filter(|_| state.asking.is_none())?;
             if let Some(planning) = on_plan(state) {
                 return match planning.tool {
+                    _ if !planning.drawing.is_empty() => Some(Command::Plan(PlanStep::RemoveAll)),
                     PlanTool::Select if planning.through => {
                         Some(Command::Plan(PlanStep::ToggleThrough))
                     }
@@ -132,22 +133,29 @@ actions! {
                     tool => Some(Command::Plan(PlanStep::Tool(tool))),
                 };
             }
-            let fragments = on_fragments(state, |of| {
-                let draws = of.tool != FragmentTool::Select || !of.drawing.is_empty();
-                let selects = of.selected.map(|_| FragmentStep::Select(None));
-                if draws { Some(FragmentStep::Tool(FragmentTool::Select)) } else { selects }
+            let fragments = on_fragments(state, |of| match of.tool {
+                _ if !of.drawing.is_empty() => Some(FragmentStep::RemoveCorners),
+                FragmentTool::Select => of.selected.map(|_| FragmentStep::Select(None)),
+                _ => Some(FragmentStep::Tool(FragmentTool::Select)),
             });
             if let Some(command) = fragments {
                 return command;
             }
-            if open.objects.tracing.is_some() {
-                return Some(Command::Trace(Trace::GiveUp));
+            if let Some(tracing) = &open.objects.tracing {
+                return Some(Command::Trace(match tracing.outline.is_empty() {
+                    true => Trace::GiveUp,
+                    false => Trace::RemoveAll,
+                }));
             }
             if open.pointer.picked.is_on {
                 return on_pile(state, Command::Pick(PickStep::Toggle));
             }
-            if open.pointer.drawn.is_some() {
-                return on_pile(state, Command::Survey(SurveyStep::Leave));
+            if let Some(drawn) = &open.pointer.drawn {
+                let step = match drawn.is_in_hand() {
+                    true => SurveyStep::RemoveAll,
+                    false => SurveyStep::Leave,
+                };
+                return on_pile(state, Command::Survey(step));
             }
             let command = match open.pointer.measure {
                 Measure::Off if open.looking.through.is_some() => {
@@ -160,7 +168,8 @@ actions! {
                     state.reviewed_flight()?;
                     Command::Review(ReviewStep::Leave)
                 }
-                _ => Command::ToggleMeasure,
+                Measure::Second(_) => Command::MeasureAnew,
+                Measure::First | Measure::Both(..) => Command::ToggleMeasure,
             };
             on_pile(state, command)
         },

@@ -11,6 +11,9 @@ use crate::state::layers::Layers;
 /// How far one step turns, degrees.
 const STEP: f64 = 15.0;
 
+/// The entries of the menu, below one of their own: with them that of the views is higher than many a window.
+pub const MENU: [Action; 6] = [OPPOSITE, PARALLEL, LEFT, RIGHT, UP, DOWN];
+
 fn turn(state: &State, left: f64, up: f64) -> Option<Command> {
     in_viewport(state, Command::View(ViewChange::Turn { left, up }))
 }

@@ -212,6 +212,8 @@ pub enum Command {
     View(ViewChange),
     /// Begins or ends measuring.
     ToggleMeasure,
+    /// Takes the point back that measuring has begun with; the tool stays.
+    MeasureAnew,
     /// A step of drawing a line or polygon on the surface, to measure there.
     Survey(SurveyStep),
     /// Does something with the clouds beside the surface.

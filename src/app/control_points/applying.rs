@@ -121,6 +121,7 @@ impl State {
         open.control.applied = None;
         let request = GeoreferenceRequest {
             photos: open.files.origin.photo_folder().map(Path::to_owned),
+            photos_are_packages: !open.files.photos_are_named,
             marked: Some(open.control_list().clone()),
             crs: open.files.crs.clone(),
             level: open.control.level,

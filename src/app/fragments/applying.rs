@@ -151,6 +151,7 @@ impl Fragments {
             FragmentStep::RemoveCorner => {
                 self.drawing.pop();
             }
+            FragmentStep::RemoveCorners => self.drawing.clear(),
             FragmentStep::Select(number) => self.selected = number,
             FragmentStep::Show(number) => self.selected = Some(number),
             FragmentStep::Delete => {

@@ -38,6 +38,8 @@ pub enum FragmentStep {
     Finish,
     /// Takes the last corner of it back.
     RemoveCorner,
+    /// Takes all its corners back; the tool stays.
+    RemoveCorners,
     /// Looks at this fragment, or at none.
     Select(Option<u32>),
     /// Looks at this fragment, brought into the middle.
@@ -84,6 +86,7 @@ impl FragmentStep {
             | Self::Tool(_)
             | Self::Brush(_)
             | Self::RemoveCorner
+            | Self::RemoveCorners
             | Self::Select(_)
             | Self::Show(_)
             | Self::NextDoubtful

@@ -85,6 +85,11 @@ impl OpenFlight {
                     Measure::Off
                 };
             }
+            Command::MeasureAnew => {
+                if self.pointer.measure != Measure::Off {
+                    self.pointer.measure = Measure::First;
+                }
+            }
             _ => {}
         }
     }

@@ -37,6 +37,9 @@ pub struct FlightFiles {
     pub opened_file: Option<PathBuf>,
     /// Where it came from, and where it is saved.
     pub origin: FlightOrigin,
+    /// Whether somebody named the folder of its photos, beside it or in its flight.toml, and no package led to it: then the folders
+    /// in it are its own.
+    pub photos_are_named: bool,
     /// The reconstruction that it was made of, if any.
     pub reconstruction: Option<FlightReconstruction>,
     /// Whether it is the flight that comes with the program, which stays as it came.
@@ -60,6 +63,9 @@ impl FlightFiles {
             .file
             .as_ref()
             .map_or_else(|| opened.settings.clone(), |(_, file)| file.settings());
+        let in_file = opened.file.as_ref();
+        let in_file = in_file.is_some_and(|(_, file)| file.photo_folder().is_some());
+        let photos_are_named = options.photos.is_some() || in_file;
         // They are in a file of their own.
         saved.control.clone_from(&opened.settings.control);
         let bundled = is_bundled(&opened.origin.suggested_file());
@@ -87,6 +93,7 @@ impl FlightFiles {
             warnings: opened.warnings,
             opened_file: opened.file.map(|(path, _)| path).filter(|_| !stays),
             origin: opened.origin,
+            photos_are_named,
             reconstruction: opened.reconstruction,
             bundled,
             kept,
@@ -126,4 +133,32 @@ fn is_bundled(file: &Path) -> bool {
     let real = |path: &Path| std::fs::canonicalize(path).ok();
     let folder = file.parent().and_then(real);
     folder.is_some() && folder == sample_flight().as_deref().and_then(real)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::jobs::Progress;
+    use crate::opening::open_flight;
+
+    fn photos_are_named(path: &str, photos: Option<&str>) -> bool {
+        let at = |path: &str| fragscale_test_data::repository().join(path);
+        let options = OpenOptions {
+            photos: photos.map(at),
+            ..OpenOptions::default()
+        };
+        let opened = open_flight(&at(path), &options, &Progress::default()).expect("a flight");
+        FlightFiles::new(at(path), options, opened).photos_are_named
+    }
+
+    /// Below a folder to which a package leads lie other flights', too.
+    #[test]
+    fn photos_are_named_by_people_and_their_files() {
+        assert!(photos_are_named("assets/sample/flight.toml", None));
+        let package = "tests/fixtures/colmap-text-points/sparse/0";
+        assert!(!photos_are_named(package, None));
+        let package = "tests/fixtures/nvm-points-photos/model.nvm";
+        let photos = "tests/fixtures/nvm-points-photos/my photos";
+        assert!(photos_are_named(package, Some(photos)));
+    }
 }

@@ -33,8 +33,10 @@ pub struct ReviewProgress {
     pub at: Option<usize>,
     /// How many of them wait for a decision.
     pub waiting: usize,
-    /// How many photos are accepted for the reasons of now, as the tool bar counts them.
+    /// How many photos she has accepted for the reasons of now, also where nothing speaks against them any more.
     pub accepted: usize,
+    /// How many of these are such: they count as trusted in the tool bar.
+    pub accepted_and_trusted: usize,
     /// How many are left out, doubtful or not, as the tool bar counts them.
     pub left_out: usize,
 }
@@ -107,7 +109,8 @@ impl OpenFlight {
             doubtful: doubtful.len(),
             at: self.selected.and_then(place).map(|place| place + 1),
             waiting: counts.waiting,
-            accepted: counts.of(Verdict::Accepted),
+            accepted: counts.accepted,
+            accepted_and_trusted: counts.accepted_and_trusted,
             left_out: counts.of(Verdict::LeftOut),
         }
     }

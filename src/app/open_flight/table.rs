@@ -1,7 +1,7 @@
 //! Which photos the table shows, in which order, and with how many decimals.
 
 use crate::exports::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn, PhotoLine};
-use crate::flight::{Along, PhotoReview, Review, Verdict};
+use crate::flight::{Along, DecisionKind, PhotoReview, Review, Verdict};
 use crate::numbers::{as_its_interval_allows, is_width};
 
 /// What the table can be sorted by.
@@ -68,11 +68,20 @@ pub struct Counts {
     pub chosen: usize,
     /// Those that wait for a decision.
     pub waiting: usize,
+    /// Those that she has accepted for the reasons of now. Where nothing speaks against one any more its verdict is "trust".
+    pub accepted: usize,
+    /// How many of these are such.
+    pub accepted_and_trusted: usize,
 }
 
 impl Counts {
     pub(crate) fn new(review: &Review) -> Self {
         let of = |is: &dyn Fn(&PhotoReview<'_>) -> bool| review.photos().filter(|p| is(p)).count();
+        let is_accepted = |photo: &PhotoReview<'_>| {
+            photo.decision.is_some_and(|decision| {
+                decision.kind == DecisionKind::Accepted && decision.covers(photo.doubts)
+            })
+        };
         Self {
             verdicts: Verdict::ALL
                 .into_iter()
@@ -80,6 +89,10 @@ impl Counts {
                 .collect(),
             chosen: of(&|photo| photo.goes_along(Along::Trusted)),
             waiting: of(&|photo| photo.waits_for_decision()),
+            accepted: of(&is_accepted),
+            accepted_and_trusted: of(&|photo| {
+                is_accepted(photo) && photo.settled() == Some(Verdict::Trust)
+            }),
         }
     }
 

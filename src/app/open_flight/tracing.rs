@@ -19,9 +19,11 @@ pub enum Trace {
     Move(usize, DVec2),
     /// Takes the last point back.
     RemoveLast,
+    /// Takes all points back; the tracing goes on.
+    RemoveAll,
     /// Makes a scale object of the points.
     Finish,
-    /// Forgets the points.
+    /// Forgets the points, and traces no longer.
     GiveUp,
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::actions::file::OPEN_SAMPLE;
-use crate::actions::{Action, MENUS};
+use crate::actions::{Action, MENUS, turning};
 use crate::command::Command;
 use crate::names;
 use crate::panels::Scrolled;
@@ -48,6 +48,12 @@ fn entries_of(
             None => {
                 ui.separator();
             }
+            Some(action) if is_turning(action) => {
+                // All of them where the first one stands.
+                if action.label == turning::OPPOSITE.label {
+                    turning_menu(state, ui, commands);
+                }
+            }
             Some(action) => entry_of(state, *action, ui, commands),
         }
         if entry.is_some_and(|action| action.label == OPEN_SAMPLE.label) {
@@ -58,6 +64,21 @@ fn entries_of(
         ui.separator();
         appearance(state, ui, commands);
     }
+}
+
+fn is_turning(action: &Action) -> bool {
+    let mut turning = turning::MENU.iter();
+    turning.any(|other| other.label == action.label)
+}
+
+/// What the keypad does, too: keys that few look for in a menu, in a menu that is long without them.
+fn turning_menu(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.menu_button("Turn", |ui| {
+        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+        for action in turning::MENU {
+            entry_of(state, action, ui, commands);
+        }
+    });
 }
 
 fn entry_of(state: &State, action: Action, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

@@ -1,7 +1,7 @@
 //! What is done every day, one click each.
 
 use super::rows::text_width;
-use super::verdict::{verdict_color, verdict_sign};
+use super::verdict::{verdict_of_now, why_pending};
 use crate::actions;
 use crate::command::Command;
 use crate::flight::Verdict;
@@ -9,7 +9,6 @@ use crate::names;
 use crate::open_flight::OpenFlight;
 use crate::size_distributions::Page;
 use crate::state::State;
-use crate::tasks::photos::STILL_COMPARING;
 use crate::units::LengthUnit;
 
 /// The units that scales are wanted in.
@@ -89,12 +88,15 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         };
         let chosen = open.chosen_count();
         let export = format!("Export {chosen}");
-        for (text, verdict, shown) in counts(&verdicts, width >= NARROWEST, &export, ui) {
-            let text = egui::RichText::new(text).color(verdict_color(verdict, ui.visuals()));
+        for (text, verdict, shown) in counts(state, &verdicts, width >= NARROWEST, &export, ui) {
+            let (_, color) = verdict_of_now(state, verdict, ui.visuals());
+            let text = egui::RichText::new(text).color(color);
             let button = ui.selectable_label(shown, text);
-            let button = button.on_hover_text(format!(
-                "Show only the photos with the verdict \"{verdict}\""
-            ));
+            let hover = format!("Show only the photos with the verdict \"{verdict}\"");
+            let button = button.on_hover_text(match why_pending(state, verdict) {
+                Some(why) => format!("{hover}\n{why}"),
+                None => hover,
+            });
             button.widget_info(|| {
                 let label = format!("Only photos: {verdict}");
                 egui::WidgetInfo::selected(egui::Role::Button, true, shown, label)
@@ -109,12 +111,9 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         export.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Button, chosen > 0, "Export chosen photos")
         });
-        let export = match state.compares_photos() {
-            true => export.on_hover_text(format!(
-                "{}\n{STILL_COMPARING}: a photo may still be doubted",
-                actions::file::EXPORT.hover
-            )),
-            false => export.on_hover_text(actions::file::EXPORT.hover),
+        let export = match why_pending(state, Verdict::Trust) {
+            Some(why) => export.on_hover_text(format!("{}\n{why}", actions::file::EXPORT.hover)),
+            None => export.on_hover_text(actions::file::EXPORT.hover),
         };
         if export.on_disabled_hover_text(why_no_export(open)).clicked() {
             commands.extend((actions::file::EXPORT.command)(state));
@@ -156,6 +155,7 @@ fn verdicts(state: &State) -> Vec<(Verdict, usize, bool)> {
 /// export stays in this row, and a further count moves nothing that lies under the bar. What has no room for whole words says
 /// less: first a verdict that no photo has does not stand, then sign and number stand alone.
 fn counts(
+    state: &State,
     verdicts: &[(Verdict, usize, bool)],
     is_wide: bool,
     export: &str,
@@ -166,7 +166,7 @@ fn counts(
             .iter()
             .filter(move |(_, count, shown)| with_none || *count > 0 || *shown);
         let texts = stands.map(move |&(verdict, count, shown)| {
-            let sign = verdict_sign(verdict);
+            let (sign, _) = verdict_of_now(state, verdict, ui.visuals());
             let text = match in_words {
                 true => format!("{sign} {count} {verdict}"),
                 false => format!("{sign} {count}"),

@@ -2,6 +2,8 @@
 
 use crate::flight::Verdict;
 use crate::numbers::significant_digits;
+use crate::state::State;
+use crate::tasks::photos::STILL_COMPARING;
 
 /// The colour of a verdict: told apart by brightness too.
 pub fn verdict_color(verdict: Verdict, visuals: &egui::Visuals) -> egui::Color32 {
@@ -45,6 +47,36 @@ pub fn verdict_sign(verdict: Verdict) -> &'static str {
     }
 }
 
+/// In place of a verdict's sign while it is not the last word.
+pub(super) const PENDING: &str = "…";
+
+/// The sign and the colour of a verdict as it is now: those of "trust" belong to what is trusted for good.
+pub(super) fn verdict_of_now(
+    state: &State,
+    verdict: Verdict,
+    visuals: &egui::Visuals,
+) -> (&'static str, egui::Color32) {
+    match state.may_still_be_doubted(verdict) {
+        true => (PENDING, visuals.weak_text_color()),
+        false => (verdict_sign(verdict), verdict_color(verdict, visuals)),
+    }
+}
+
+/// Why a verdict is not the last word; `None` where it is.
+pub(super) fn why_pending(state: &State, verdict: Verdict) -> Option<String> {
+    let is_pending = state.may_still_be_doubted(verdict);
+    is_pending.then(|| format!("{STILL_COMPARING}: a photo may still be doubted"))
+}
+
+/// Draws a photo's verdict beside its name.
+pub(super) fn verdict_label(state: &State, verdict: Verdict, ui: &mut egui::Ui) {
+    let (sign, color) = verdict_of_now(state, verdict, ui.visuals());
+    let label = ui.colored_label(color, format!("{sign} {verdict}"));
+    if let Some(why) = why_pending(state, verdict) {
+        label.on_hover_text(why);
+    }
+}
+
 /// A number that may be missing.
 pub(super) fn or_dash(value: Option<f64>, digits: u8) -> String {
     value.map_or_else(|| "–".to_owned(), |value| significant_digits(value, digits))
@@ -54,6 +86,8 @@ pub(super) fn or_dash(value: Option<f64>, digits: u8) -> String {
 mod tests {
     use super::*;
     use crate::render::SELECTED;
+    use crate::state::preferences::Preferences;
+    use crate::tasks::Task;
 
     /// WCAG 2.2: relative luminance of an sRGB colour.
     fn luminance(color: egui::Color32) -> f64 {
@@ -109,6 +143,35 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// While photos are compared none is trusted for good; whatever speaks against one stays.
+    #[test]
+    fn trust_is_pending_while_photos_are_compared() {
+        let visuals = egui::Visuals::dark();
+        let mut state = State::new(egui::Context::default(), Preferences::default());
+        let green = (
+            verdict_sign(Verdict::Trust),
+            verdict_color(Verdict::Trust, &visuals),
+        );
+        assert_eq!(verdict_of_now(&state, Verdict::Trust, &visuals), green);
+        // It counts as running until its end is taken.
+        state.start(Task::THUMBNAILS, |_| (), |_, ()| ());
+        let pending = (PENDING, visuals.weak_text_color());
+        assert_eq!(verdict_of_now(&state, Verdict::Trust, &visuals), pending);
+        let why = why_pending(&state, Verdict::Trust).expect("a reason");
+        assert!(why.contains("still being compared"), "{why}");
+        for verdict in Verdict::ALL {
+            let is_trust = verdict == Verdict::Trust;
+            assert_eq!(
+                why_pending(&state, verdict).is_some(),
+                is_trust,
+                "{verdict}"
+            );
+        }
+        state.work.cancel(Task::THUMBNAILS);
+        assert_eq!(verdict_of_now(&state, Verdict::Trust, &visuals), green);
+        assert_eq!(why_pending(&state, Verdict::Trust), None);
     }
 
     /// The selected photo's lines have another colour than any verdict, above all than "check".

@@ -170,6 +170,7 @@ impl Planning {
             PlanStep::RemoveLast => {
                 self.drawing.pop();
             }
+            PlanStep::RemoveAll => self.drawing.clear(),
             PlanStep::Finish => self.finish(),
             PlanStep::Select(photo) => self.select(photo),
             PlanStep::SelectBy(by) => {

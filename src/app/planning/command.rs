@@ -21,6 +21,8 @@ pub enum PlanStep {
     Finish,
     /// Takes the last corner of it back.
     RemoveLast,
+    /// Takes all its corners back; the tool stays.
+    RemoveAll,
     /// Selects a photo by its place in the plan.
     Select(Option<usize>),
     /// Selects one that is so many further on the way.
@@ -60,6 +62,7 @@ impl PlanStep {
             Self::Make
             | Self::Tool(_)
             | Self::RemoveLast
+            | Self::RemoveAll
             | Self::Select(_)
             | Self::SelectBy(_)
             | Self::ToggleThrough

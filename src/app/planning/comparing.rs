@@ -9,7 +9,7 @@ use crate::command::{Command, Destination};
 use crate::exports::{DrawingFormat, FlownFigure, FlownReport, flown_csv, flown_json};
 use crate::fault::Fault;
 use crate::files::{self, Kind};
-use crate::formats::{self, FileError};
+use crate::formats::{self, FileError, read_mission};
 use crate::jobs::Progress;
 use crate::opening::{FlightOfMission, compare_flown};
 use crate::size_distributions::Page;
@@ -54,7 +54,7 @@ impl State {
         };
         let flight = open.flight().clone();
         let crs = open.files.crs.clone();
-        let take_off = open.planning.now().and_then(|now| now.take_off);
+        let of_plan = open.planning.now().and_then(|now| now.take_off);
         let file = (open.files.origin.flight_file())
             .map_or_else(|| PathBuf::from(&flight.parts().name), Path::to_owned);
         let work = move |progress: &Progress| {
@@ -63,6 +63,9 @@ impl State {
                 flight: &flight,
                 crs: crs.as_deref(),
             };
+            // Nobody gave that of the plan on the screen for this mission: it stands in for none.
+            let says_none = read_mission(&path)?.mission.take_off.is_none();
+            let take_off = of_plan.filter(|_| says_none);
             let compared = compare_flown(&[&path], of, take_off, progress)?;
             Ok::<_, FileError>(FlownMission::of(&path, compared, &flight))
         };

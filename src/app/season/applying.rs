@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use super::{FlightState, FoundSeason, Happened, SeasonField, SeasonForm, SeasonStep};
 use crate::batch::{
-    Asked, BatchOptions, Event, Outcome, Record, ResultsFolder, Season, SeasonFlight, Step, run,
-    write_results,
+    Asked, BatchOptions, Event, Outcome, Record, ResultsFolder, Season, SeasonFlight, Step,
+    TakenAway, run, write_results,
 };
 use crate::command::Asking;
 use crate::exports::SeasonRow;
@@ -69,6 +69,7 @@ impl State {
             self.season.form.steps = None;
         }
         self.season.ended = None;
+        self.season.taken_away = TakenAway::default();
         self.look_at_season(if is_typed { TYPED } else { Duration::ZERO });
     }
 
@@ -119,6 +120,7 @@ impl State {
             }
         };
         self.season.ended = None;
+        self.season.taken_away = TakenAway::default();
         self.season.states = vec![FlightState::Waiting; found.flights.len()];
         // Of its own: a cancelled run may still have something to say.
         self.season.happened = Arc::default();
@@ -141,7 +143,7 @@ impl State {
             Task::SEASON,
             work,
             |state, ended: Result<String, String>| {
-                state.take_season();
+                state.end_season();
                 match &ended {
                     Ok(said) => state.say(Severity::Note, said),
                     Err(why) => {
@@ -158,22 +160,34 @@ impl State {
         );
     }
 
-    /// Takes what has happened to the flights of the season.
+    /// Takes what has happened to the flights of the season. Where somebody is just putting something there, the next frame does.
     pub(crate) fn take_season(&mut self) {
         let Ok(mut happened) = self.season.happened.try_lock() else {
             return;
         };
         let all = std::mem::take(&mut *happened);
         drop(happened);
-        for (flight, now) in all {
-            if let Some(state) = self.season.states.get_mut(flight) {
-                *state = now;
-            }
+        self.season.take(all);
+    }
+
+    /// Takes the last of what has happened, where the run has ended as where she has cancelled it, and says what it took away.
+    fn end_season(&mut self) {
+        // No frame takes what is left behind here: who is just putting something there is waited for.
+        let happened = self.season.happened.lock();
+        let mut happened = happened.unwrap_or_else(PoisonError::into_inner);
+        let all = std::mem::take(&mut *happened);
+        drop(happened);
+        self.season.take(all);
+        let away: Vec<String> = self.season.taken_away.lines().collect();
+        for line in away {
+            self.say(Severity::Note, &line);
         }
     }
 
     /// What the list says once she has cancelled it.
     pub(crate) fn season_cancelled(&mut self) {
+        // What finished flights took away is gone.
+        self.end_season();
         self.season.happened = Arc::default();
         for state in &mut self.season.states {
             if matches!(state, FlightState::Running(..)) {
@@ -205,6 +219,10 @@ fn look(
                 .map_err(|error| error.to_string())?
         }
     };
+    // Before the steps that are chosen: one that is left out takes along what the season says of it.
+    let mut asked = season.asked.steps.iter();
+    let of_season =
+        asked.any(|asked| asked.step == Step::Psd && asked.options.contains_key("reference"));
     if let Some(steps) = &form.steps {
         season.asked.set_steps(steps);
     }
@@ -219,7 +237,9 @@ fn look(
         })
     });
     let states = states.collect();
+    let mut of_flights = found.flights.iter();
     let found = FoundSeason {
+        has_reference: of_season || of_flights.any(|flight| flight.reference.is_some()),
         season,
         flights: found.flights,
         notes: found.notes,
@@ -277,14 +297,22 @@ fn do_season(
     let _held = held(&options.to, progress)?;
     progress.stage("doing the flights");
     let on_event = |event: Event<'_>| match event {
-        Event::Begun(flight) => tell((flight, FlightState::Running("opening".to_owned(), 0.0))),
-        Event::At(flight, stage, fraction) => {
-            tell((flight, FlightState::Running(stage.to_owned(), fraction)));
+        Event::Begun(flight) => {
+            let now = FlightState::Running("opening".to_owned(), 0.0);
+            tell(Happened::new(flight, now));
         }
-        Event::TakenBack(flight) => tell((flight, FlightState::Waiting)),
+        Event::At(flight, stage, fraction) => {
+            let now = FlightState::Running(stage.to_owned(), fraction);
+            tell(Happened::new(flight, now));
+        }
+        Event::TakenBack(flight) => tell(Happened::new(flight, FlightState::Waiting)),
         Event::Ended(ended) => {
             let row = Box::new(ended.row.clone());
-            tell((ended.flight, FlightState::Ended(ended.outcome, row)));
+            tell(Happened {
+                flight: ended.flight,
+                now: FlightState::Ended(ended.outcome, row),
+                taken_away: ended.taken_away.clone(),
+            });
         }
     };
     let ended = run(asked, &found.flights, options, &on_event, progress);
@@ -305,4 +333,46 @@ fn do_season(
         "{done} done, {as_before} as before, {failed} failed; the tables are season.html and season.csv in {}",
         options.to.display()
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::preferences::Preferences;
+
+    /// Also of a flight whose end is just being told by its worker.
+    #[test]
+    fn what_a_cancelled_season_took_away_is_said() {
+        let mut state = State::new(egui::Context::default(), Preferences::default());
+        let running = || FlightState::Running("opening".to_owned(), 0.0);
+        state.season.states = vec![running(), running()];
+        let happened = state.season.happened.clone();
+        let (holds, is_held) = std::sync::mpsc::channel();
+        let worker = std::thread::spawn(move || {
+            let mut happened = happened.lock().expect("a lock");
+            holds.send(()).expect("somebody waits");
+            std::thread::sleep(Duration::from_millis(100));
+            let row = SeasonRow {
+                blast: "north".to_owned(),
+                date: None,
+                flight: "north".to_owned(),
+                results: "north".to_owned(),
+                findings: None,
+                error: None,
+            };
+            happened.push(Happened {
+                flight: 0,
+                now: FlightState::Ended(Outcome::Done, Box::new(row)),
+                taken_away: std::iter::once(("check.txt".to_owned(), 1)).collect(),
+            });
+        });
+        is_held.recv().expect("it is held");
+        state.season_cancelled();
+        worker.join().expect("it has ended");
+        let words = state.season.states.iter().map(FlightState::in_words);
+        assert_eq!(words.collect::<Vec<_>>(), ["done", "waiting"]);
+        let said = state.log.iter().map(|line| line.text.as_str());
+        let said = said.filter(|text| text.starts_with("taken away: check.txt of 1 flight,"));
+        assert_eq!(said.count(), 1);
+    }
 }

@@ -2,10 +2,11 @@
 
 mod applying;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use crate::batch::{Outcome, Season, SeasonFlight, Step};
+use crate::batch::{Outcome, Season, SeasonFlight, Step, TakenAway};
 use crate::exports::SeasonRow;
 
 /// A step of going through a season.
@@ -52,6 +53,8 @@ pub struct FoundSeason {
     pub flights: Vec<SeasonFlight>,
     /// What to know, a sentence each.
     pub notes: Vec<String>,
+    /// Whether the season or any of its flights names what psd holds sizes against, whether that is chosen or not.
+    pub has_reference: bool,
     /// The folder of its results.
     pub to: PathBuf,
 }
@@ -102,7 +105,26 @@ impl FlightState {
 }
 
 /// What happens to a flight of the list.
-pub(crate) type Happened = (usize, FlightState);
+#[derive(Debug)]
+pub(crate) struct Happened {
+    /// Its place.
+    flight: usize,
+    /// How it is from now on.
+    now: FlightState,
+    /// How many results of earlier runs it took away, by the file or folder that they were or lay in.
+    taken_away: BTreeMap<String, usize>,
+}
+
+impl Happened {
+    /// Without taking anything away.
+    fn new(flight: usize, now: FlightState) -> Self {
+        Self {
+            flight,
+            now,
+            taken_away: BTreeMap::new(),
+        }
+    }
+}
 
 /// What the small window holds.
 #[derive(Debug, Default)]
@@ -117,6 +139,8 @@ pub struct SeasonList {
     pub selected: Option<usize>,
     /// What the last run came to, in a sentence; or why it failed.
     pub ended: Option<Result<String, String>>,
+    /// What the last run took away of earlier ones.
+    pub taken_away: TakenAway,
     /// The command that does a flight; this program where nobody says another.
     pub program: Option<PathBuf>,
     /// Where the run puts what happens, until it is taken.
@@ -134,6 +158,16 @@ impl SeasonList {
         let place = self.selected?;
         let flight = self.season()?.flights.get(place)?;
         Some((&flight.path, self.states.get(place)?))
+    }
+
+    /// Takes what has happened to its flights.
+    fn take(&mut self, happened: Vec<Happened>) {
+        for happened in happened {
+            self.taken_away.add(&happened.taken_away);
+            if let Some(state) = self.states.get_mut(happened.flight) {
+                *state = happened.now;
+            }
+        }
     }
 
     /// Done with, of all; and how many of these failed.

@@ -5,6 +5,7 @@ pub mod bundled;
 pub mod history;
 pub mod layers;
 pub mod preferences;
+mod view;
 
 use std::path::PathBuf;
 

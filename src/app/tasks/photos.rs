@@ -8,7 +8,7 @@ use image::buffer::ConvertBuffer;
 
 use super::work::Task;
 use crate::camera::Camera;
-use crate::flight::{ColoursFound, Doubt, TogetherFound};
+use crate::flight::{ColoursFound, Doubt, TogetherFound, Verdict};
 use crate::formats::photos::photo_metadata;
 use crate::formats::{self, FileError};
 use crate::jobs::Progress;
@@ -61,6 +61,17 @@ impl State {
     /// follows from all.
     pub(crate) fn compares_photos(&self) -> bool {
         self.work.is_running(Task::THUMBNAILS)
+    }
+
+    /// Whether a photo with this verdict may still be doubted for what its comparison says.
+    pub(crate) fn may_still_be_doubted(&self, verdict: Verdict) -> bool {
+        self.may_fall() == Some(verdict)
+    }
+
+    /// The verdict with which a photo may still be doubted for that, if any. It is looked up among all tasks: who looks at many photos
+    /// asks once.
+    pub(crate) fn may_fall(&self) -> Option<Verdict> {
+        self.compares_photos().then_some(Verdict::Trust)
     }
 
     /// Reads all photos, small.

@@ -34,7 +34,7 @@ impl State {
             Trace::Size(..) | Trace::Begin(_) => {}
             Trace::GiveUp => open.objects.tracing = None,
             Trace::Finish => self.finish_tracing(),
-            Trace::Add(_) | Trace::Move(..) | Trace::RemoveLast => {
+            Trace::Add(_) | Trace::Move(..) | Trace::RemoveLast | Trace::RemoveAll => {
                 let Some(tracing) = &mut open.objects.tracing else {
                     return;
                 };
@@ -49,6 +49,7 @@ impl State {
                     Trace::RemoveLast => {
                         outline.pop();
                     }
+                    Trace::RemoveAll => outline.clear(),
                     _ => {}
                 }
                 let (_, most) = tracing.kind.points();

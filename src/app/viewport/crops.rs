@@ -53,7 +53,7 @@ impl Viewport {
         let surface = std::sync::Arc::as_ptr(geometry).addr();
         let of = Some((open.number, photo, surface, outcomes, show.clone()));
         if self.crops.of != of {
-            graphics.upload(open, ui.visuals());
+            graphics.upload(state, open, ui.visuals());
             let awaited = draw(&mut self.crops, graphics, open, photo, &show)?;
             if awaited {
                 ui.ctx().request_repaint_after(AWAITED);

@@ -15,6 +15,7 @@ use crate::render::{
     BesideCloud, Gpu, PhotoGeometry, PhotoLook, Renderer, Show, SurfaceBuffers, View,
 };
 use crate::scale::ViewFacts;
+use crate::state::State;
 
 /// How long the view must rest before everything is drawn.
 const REST: Duration = Duration::from_millis(250);
@@ -62,7 +63,7 @@ pub(super) struct Uploaded {
 
 impl Graphics {
     /// Uploads what is new.
-    pub(super) fn upload(&mut self, open: &OpenFlight, visuals: &egui::Visuals) {
+    pub(super) fn upload(&mut self, state: &State, open: &OpenFlight, visuals: &egui::Visuals) {
         let uploaded = &mut self.uploaded;
         if uploaded.flight != Some(open.number) {
             *uploaded = Uploaded {
@@ -106,11 +107,14 @@ impl Graphics {
             self.renderer.set_flight_line(open.line.to_vec());
             self.drawn = None;
         }
+        let may_fall = state.may_fall();
         let looks: Vec<PhotoLook> = open
             .review
             .photos()
             .map(|photo| {
-                let color = line_color(photo.settled(), visuals);
+                let settled = photo.settled();
+                let last_word = settled.filter(|verdict| Some(*verdict) != may_fall);
+                let color = line_color(last_word, visuals);
                 let [red, green, blue, _] = color.to_array();
                 PhotoLook {
                     visible: true,

@@ -96,7 +96,7 @@ impl Viewport {
             place,
             pixels_per_point,
             size,
-            view: view(state, open),
+            view: state.view(open),
         };
         if open.looking.size != Some(scene.size()) {
             commands.push(Command::View(ViewChange::Resized(scene.size())));
@@ -119,7 +119,7 @@ impl Viewport {
                     ui.ctx().request_repaint();
                 }
                 times.end(Phase::Panels);
-                graphics.upload(open, ui.visuals());
+                graphics.upload(state, open, ui.visuals());
                 times.end(Phase::Upload);
                 graphics.draw(&scene, &show, ui);
                 times.end(Phase::Draw);
@@ -192,9 +192,9 @@ impl Viewport {
         } else {
             Background::Color([255, 255, 255])
         };
-        graphics.upload(open, &egui::Visuals::light());
+        graphics.upload(state, open, &egui::Visuals::light());
         graphics.uploaded.looks.clear();
-        let mut view = view(state, open);
+        let mut view = state.view(open);
         if let Some(seen) = open.looking.size {
             view = view.reframed(seen, DVec2::from(size.map(f64::from)));
         }
@@ -246,19 +246,6 @@ impl Scene {
     fn screen(&self, pixel: DVec2) -> Pos2 {
         let points = pixel / self.pixels_per_point;
         self.place.min + vec2(points.x as f32, points.y as f32)
-    }
-}
-
-fn view(state: &State, open: &OpenFlight) -> View {
-    if state.page == Page::Plan {
-        return planned::view(open).unwrap_or_else(|| open.looking.orbit.view());
-    }
-    let through = open.looking.through;
-    match through.and_then(|photo| open.review.photo(photo)) {
-        None => open.looking.orbit.view(),
-        Some(photo) => {
-            View::through(&photo, open.looking.orbit.distance).into_photo(open.looking.into)
-        }
     }
 }
 

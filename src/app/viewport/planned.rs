@@ -10,21 +10,13 @@ use crate::geometry::Ray;
 use crate::open_flight::OpenFlight;
 use crate::plan::Terrain;
 use crate::planning::{Handle, PlanStep, PlanTool};
-use crate::render::{Scope, Show, View};
+use crate::render::{Scope, Show};
 
 /// Side of what the mouse takes hold of, points.
 const HOLD: f32 = 18.0;
 const RADIUS: f32 = 5.0;
 /// How often the place under the mouse is looked for again at the height of the place before.
 const ROUNDS: usize = 12;
-
-/// What the viewport looks from while the selected photo's camera is looked through.
-pub(super) fn view(open: &OpenFlight) -> Option<View> {
-    let planning = &open.planning;
-    let (_, photo) = planning.photo().filter(|_| planning.through)?;
-    let camera = &planning.made.as_ref()?.plan.camera;
-    Some(View::of_photo(camera, &photo.pose, photo.distance))
-}
 
 /// The plan in place of the flight's own photos.
 pub(super) fn show_planned(open: &OpenFlight, show: &mut Show) {

@@ -55,6 +55,8 @@ pub enum SurveyStep {
     Toggle(SurveyTool),
     /// Takes the last point back.
     RemoveLast,
+    /// Takes all points of what is being drawn back; the tool stays.
+    RemoveAll,
     /// Ends the line, closes the polygon; the next click begins anew.
     Finish,
     /// What the volume is over.
@@ -98,6 +100,16 @@ impl Drawn {
     /// Whether its last point can be taken back as a change of one's mind: it is being drawn.
     pub fn is_in_hand(&self) -> bool {
         !self.finished && !self.points.is_empty()
+    }
+
+    /// To the finished one that it was begun over, where nothing is left of it.
+    fn go_back(&mut self) {
+        if self.points.is_empty()
+            && let Some(before) = self.before.take()
+        {
+            *self = *before;
+            self.asked = None;
+        }
     }
 
     /// Its points, the mouse the last of them while it is drawn.
@@ -161,12 +173,11 @@ impl OpenFlight {
             (SurveyStep::RemoveLast, Some(drawn)) => {
                 drawn.points.pop();
                 drawn.finished = false;
-                if drawn.points.is_empty()
-                    && let Some(before) = drawn.before.take()
-                {
-                    *drawn = *before;
-                    drawn.asked = None;
-                }
+                drawn.go_back();
+            }
+            (SurveyStep::RemoveAll, Some(drawn)) if drawn.is_in_hand() => {
+                drawn.points.clear();
+                drawn.go_back();
             }
             (SurveyStep::Finish, Some(drawn)) => {
                 drawn.finished = drawn.points.len() >= drawn.least();
@@ -175,7 +186,8 @@ impl OpenFlight {
             (SurveyStep::Base(BaseChoice::Height(height)), _) if !height.is_finite() => {}
             (SurveyStep::Base(BaseChoice::Second), _) if self.pointer.second.is_none() => {}
             (SurveyStep::Base(base), Some(drawn)) => drawn.base = base,
-            (_, None) => {}
+            // What is finished goes with its tool.
+            (SurveyStep::RemoveAll, Some(_)) | (_, None) => {}
         }
         self.ask_surveyor();
     }

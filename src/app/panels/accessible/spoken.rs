@@ -32,16 +32,23 @@ fn selected(state: &State) -> Option<String> {
         to_type: true,
         ..row.line
     };
-    Some(format!("{}: {}", line.photo.name(), scales_in_words(&line)))
+    Some(format!(
+        "{}: {}",
+        line.photo.name(),
+        scales_in_words(state, &line)
+    ))
 }
 
 /// "top 20.6, bottom 21.4 px/cm, trust".
-pub(in crate::panels) fn scales_in_words(line: &PhotoLine<'_>) -> String {
-    let verdict = line.photo.settled();
-    let verdict = verdict.map_or("not looked at yet", |verdict| verdict.as_str());
+pub(in crate::panels) fn scales_in_words(state: &State, line: &PhotoLine<'_>) -> String {
+    let verdict = match line.photo.settled() {
+        None => "not looked at yet".to_owned(),
+        Some(verdict) if state.may_still_be_doubted(verdict) => format!("{verdict} so far"),
+        Some(verdict) => verdict.to_string(),
+    };
     let estimates = line.estimates(line.photo.pair);
     match estimates.map(|estimate| estimate.map(|scale| scale.text(4))) {
-        [None, None] => verdict.to_owned(),
+        [None, None] => verdict,
         scales => {
             let [top, bottom] = scales.map(|scale| scale.unwrap_or_else(|| "none".to_owned()));
             format!("top {top}, bottom {bottom} px/{}, {verdict}", line.unit)

@@ -15,9 +15,17 @@ use crate::typed::typed;
 /// How wide the window is, where there is room for it.
 pub(super) const WIDTH: f32 = 780.0;
 
+/// How high its contents are, where there is room for it and whatever it holds: the window is in the middle of the screen, and its
+/// fields stay where they are while it looks for flights.
+const HEIGHT: f32 = 560.0;
+/// What of the screen is above and below the contents.
+const AROUND: f32 = 70.0;
+
 const ROW: f32 = 24.0;
-/// What of the window is not the list.
-const ABOVE: f32 = 330.0;
+/// What is said of the flight that is selected, below the list.
+const SELECTED: f32 = 60.0;
+/// What the run came to, and its button, below that.
+const RAN: f32 = 70.0;
 
 /// Draws the window's contents.
 pub(super) fn season(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -25,6 +33,10 @@ pub(super) fn season(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comman
     let mut running = state.work.running();
     let run = running.find(|(task, _)| *task == Task::SEASON);
     let mut form = held.form.clone();
+    let (top, screen) = (ui.cursor().top(), ui.ctx().content_rect());
+    let high = (screen.height() - AROUND).clamp(100.0, HEIGHT);
+    ui.set_min_height(high);
+    let bottom = top + high - RAN - held.taken_away.lines().count() as f32 * ROW;
     ui.add_enabled_ui(run.is_none(), |ui| {
         place_row(SeasonField::Season, &mut form, "", ui, commands);
         let proposed = held.season().map(|found| found.to.display().to_string());
@@ -51,7 +63,7 @@ pub(super) fn season(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comman
                 ui.colored_label(ui.visuals().warn_fg_color, format!("⚠ {note}"));
             }
             ui.separator();
-            list(state, found, ui, commands);
+            list(state, (found, bottom), ui, commands);
             selected(state, ui, commands);
         }
         None if state.work.is_running(Task::LOOK_AT_SEASON) => {
@@ -64,7 +76,12 @@ pub(super) fn season(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comman
             ui.weak("Every flight below the folder is taken, or those that SEASON.toml names.");
         }
     }
+    let left = bottom - ui.cursor().top();
+    ui.add_space(left.max(0.0));
     ui.separator();
+    for line in held.taken_away.lines() {
+        ui.label(line);
+    }
     match run {
         Some((_, (_, fraction))) => {
             let [ended, of, failed] = held.counts();
@@ -166,28 +183,32 @@ fn place_row(
     });
 }
 
+/// What the box of psd says before anybody chooses it in vain.
+const NO_REFERENCE: &str = "No flight found has a reference, so psd is passed over: name one in SEASON.toml, as reference of [psd] or of a [[flight]]";
+
+/// Whether there are flights, and nobody says what the sizes of any are held against.
+fn is_without_reference(found: &FoundSeason) -> bool {
+    !found.has_reference && !found.flights.is_empty()
+}
+
 /// What is done with every flight.
 fn steps_row(found: &FoundSeason, form: &mut SeasonForm, ui: &mut egui::Ui) {
     ui.horizontal_wrapped(|ui| {
         ui.label("Steps");
         let asked = &found.season.asked;
         for step in Step::ALL {
-            // A comparison needs a reference, which the season names.
-            let has_reference = asked.has(step)
-                || found
-                    .flights
-                    .iter()
-                    .any(|flight| flight.reference.is_some());
-            if step == Step::Psd && !has_reference {
-                continue;
-            }
             let mut is_on = asked.has(step);
             let check = ui.checkbox(&mut is_on, step.as_str());
             check.widget_info(|| {
                 let name = format!("Step {}", step.as_str());
                 egui::WidgetInfo::selected(egui::Role::CheckBox, true, is_on, name)
             });
-            if check.on_hover_text(step.explained()).changed() {
+            let explained = step.explained();
+            let hover = match step == Step::Psd && is_without_reference(found) {
+                true => format!("{explained}\n{NO_REFERENCE}"),
+                false => explained.to_owned(),
+            };
+            if check.on_hover_text(hover).changed() {
                 let steps = Step::ALL.into_iter();
                 let steps = steps.filter(|other| match *other == step {
                     true => is_on,
@@ -199,11 +220,17 @@ fn steps_row(found: &FoundSeason, form: &mut SeasonForm, ui: &mut egui::Ui) {
     });
 }
 
-/// The flights: only the rows in sight are drawn.
-fn list(state: &State, found: &FoundSeason, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+/// The flights, down to `bottom` with what is said of the one that is selected: only the rows in sight are drawn.
+fn list(
+    state: &State,
+    (found, bottom): (&FoundSeason, f32),
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
     let held = &state.season;
     let unit = &found.season.asked.unit;
-    let high = (ui.ctx().content_rect().height() - ABOVE).clamp(100.0, 420.0);
+    // Behind its header.
+    let high = (bottom - SELECTED - ROW - ui.cursor().top()).max(100.0);
     let sizes = [format!("P50 {unit}"), format!("P80 {unit}")];
     let heads = [
         "State", "Blast", "Date", "Photos", "Verdicts", &sizes[0], &sizes[1],

@@ -22,7 +22,7 @@ use crate::panels::Scrolled;
 use crate::panels::corner_loupe::{self, Crops};
 use crate::panels::corner_marks::{CORNER_ROOM, draw_corner, nearest_inside};
 use crate::panels::linked;
-use crate::panels::verdict::{verdict_color, verdict_sign};
+use crate::panels::verdict::verdict_label;
 use crate::picture::{BarEdge, ScaleBar, scale_bars};
 use crate::scale::ImageKind;
 use crate::state::State;
@@ -86,8 +86,7 @@ impl Inspector {
         ui.allocate_ui_with_layout(row, right, |ui| {
             tint::switch(state, ui, commands);
             if let Some(verdict) = reviewed.settled() {
-                let text = format!("{} {verdict}", verdict_sign(verdict));
-                ui.colored_label(verdict_color(verdict, ui.visuals()), text);
+                verdict_label(state, verdict, ui);
             }
             if !open.is_computed() {
                 ui.weak("computing…");

@@ -15,7 +15,7 @@ pub(super) fn reasons(
     commands: &mut Vec<Command>,
 ) {
     if reviewed.doubts.is_empty() {
-        ui.weak(if reviewed.is_looked_at {
+        ui.weak(if reviewed.is_looked_at && !state.compares_photos() {
             "No reason for doubt was found."
         } else {
             "Looking for reasons for doubt…"

@@ -156,7 +156,7 @@ fn in_words(state: &State, open: &OpenFlight, photo: usize) -> String {
         to_type: true,
         ..row.line
     };
-    format!("{place}, {}", scales_in_words(&line))
+    format!("{place}, {}", scales_in_words(state, &line))
 }
 
 /// The keys that this panel alone has: the arrows to the sides go to the next photo, as those up and down.

@@ -13,7 +13,7 @@ use super::cloud_alone::cloud_alone;
 use super::field::combo_box;
 use super::review::row_menu;
 use super::rows::text_width;
-use super::verdict::{verdict_color, verdict_sign};
+use super::verdict::{PENDING, verdict_of_now, why_pending};
 use crate::command::Command;
 use crate::exports::{ColumnKind, PhotoLine};
 use crate::flight::{PhotoReview, Verdict};
@@ -132,14 +132,14 @@ fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
                             thumbnail(open, photo, ui);
                         }
                         match column.kind {
-                            ColumnKind::Verdict => verdict(line.photo, false, ui),
+                            ColumnKind::Verdict => verdict(state, line.photo, false, ui),
                             ColumnKind::Name | ColumnKind::Text => {
                                 let text = column.short_value(&line);
                                 if column.kind == ColumnKind::Name && !verdict_in_sight {
                                     // In a narrow list the verdict goes last.
-                                    let beside = sign_width(line.photo, ui) + gap;
+                                    let beside = sign_width(state, line.photo, ui) + gap;
                                     columns.note(place, &text, beside, ui);
-                                    verdict(line.photo, true, ui);
+                                    verdict(state, line.photo, true, ui);
                                 } else {
                                     columns.note(place, &text, 0.0, ui);
                                 }
@@ -163,7 +163,7 @@ fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
                     let selected = open.selected == Some(photo);
                     egui::WidgetInfo::selected(egui::Role::Row, true, selected, label)
                 });
-                described(&response, || scales_in_words(&line));
+                described(&response, || scales_in_words(state, &line));
                 if response.clicked() {
                     commands.push(Command::Select(Some(photo)));
                 }
@@ -310,24 +310,26 @@ fn thumbnail(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
 }
 
 /// How wide the sign of its verdict is, points.
-fn sign_width(photo: PhotoReview<'_>, ui: &egui::Ui) -> f32 {
-    text_width(ui, photo.settled().map_or("…", verdict_sign))
+fn sign_width(state: &State, photo: PhotoReview<'_>, ui: &egui::Ui) -> f32 {
+    let sign = |verdict| verdict_of_now(state, verdict, ui.visuals()).0;
+    text_width(ui, photo.settled().map_or(PENDING, sign))
 }
 
 /// The verdict, or its sign alone.
-fn verdict(photo: PhotoReview<'_>, is_sign: bool, ui: &mut egui::Ui) {
+fn verdict(state: &State, photo: PhotoReview<'_>, is_sign: bool, ui: &mut egui::Ui) {
     let Some(verdict) = photo.settled() else {
-        ui.weak("…").on_hover_text("Not looked at yet");
+        ui.weak(PENDING).on_hover_text("Not looked at yet");
         return;
     };
-    let sign = verdict_sign(verdict);
+    let (sign, color) = verdict_of_now(state, verdict, ui.visuals());
     let words = match is_sign {
         true => sign.to_owned(),
         false => format!("{sign} {verdict}"),
     };
-    let words = egui::RichText::new(words).color(verdict_color(verdict, ui.visuals()));
+    let words = egui::RichText::new(words).color(color);
     let label = ui.add(egui::Label::new(words).selectable(false).truncate());
-    let reasons = photo.reasons_and_decision();
+    let mut reasons = photo.reasons_and_decision();
+    reasons.extend(why_pending(state, verdict));
     if !reasons.is_empty() {
         label.on_hover_text(reasons.join("\n"));
     }

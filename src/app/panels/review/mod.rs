@@ -11,10 +11,11 @@ use crate::command::{Command, ReviewStep};
 use crate::flight::{DecisionKind, OnPhoto, PhotoReview};
 use crate::names::{self, unbroken};
 use crate::open_flight::OpenFlight;
+use crate::open_flight::reviewing::ReviewProgress;
 use crate::panels::Scrolled;
 use crate::panels::field::note::NoteField;
 use crate::panels::inspector::{Inspector, Offer, SIZE_ERROR, remedy_button};
-use crate::panels::verdict::{verdict_color, verdict_sign};
+use crate::panels::verdict::{verdict_color, verdict_label};
 use crate::reviewing::note_field;
 use crate::state::State;
 
@@ -43,13 +44,13 @@ pub(super) fn review(
         }
         return;
     };
-    heading(reviewed, ui);
+    heading(state, reviewed, ui);
     let sight = open.sight().map(|sight| sight.on_photo);
     // Where nothing speaks against it, what it goes along with.
     let on_photo = sight.unwrap_or(OnPhoto::TopBottom);
     inspector.reason_picture(state, open, (photo, reviewed), &on_photo, ui);
     egui::ScrollArea::vertical().show_focused(ui, |ui| {
-        if !reviewed.is_doubtful() && open.review.is_looked_at() {
+        if !reviewed.is_doubtful() && open.review.is_looked_at() && !state.compares_photos() {
             ui.weak("Nothing speaks against the selected photo.");
         }
         reasons(state, open, reviewed, ui, commands);
@@ -65,10 +66,12 @@ pub(super) fn review(
 fn progress(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let progress = open.review_progress();
     if progress.doubtful == 0 {
-        ui.label(match open.review.is_looked_at() {
-            true => "No photo is doubtful.",
-            false => "Looking for reasons for doubt…",
-        });
+        ui.label(
+            match open.review.is_looked_at() && !state.compares_photos() {
+                true => "No photo is doubtful.",
+                false => "Looking for reasons for doubt…",
+            },
+        );
     } else {
         ui.horizontal_wrapped(|ui| {
             let place = match progress.at {
@@ -76,10 +79,13 @@ fn progress(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut 
                 None => format!("{} doubtful", progress.doubtful),
             };
             ui.strong(place);
-            ui.weak(format!(
+            let decided = ui.weak(format!(
                 "{} to decide, {} accepted, {} left out",
                 progress.waiting, progress.accepted, progress.left_out
             ));
+            if let Some(why) = why_more_accepted(progress) {
+                decided.on_hover_text(why);
+            }
         });
     }
     if progress.waiting > 0 || !open.review.is_looked_at() {
@@ -102,14 +108,25 @@ fn progress(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut 
     });
 }
 
-fn heading(reviewed: PhotoReview<'_>, ui: &mut egui::Ui) {
+/// Why more photos are accepted here than in the tool bar; `None` where they are as many.
+fn why_more_accepted(progress: ReviewProgress) -> Option<String> {
+    let (photos, them) = match progress.accepted_and_trusted {
+        0 => return None,
+        1 => ("1 of the accepted photos counts".to_owned(), "it"),
+        n => (format!("{n} of the accepted photos count"), "them"),
+    };
+    Some(format!(
+        "{photos} as trusted in the tool bar: nothing speaks against {them} any more"
+    ))
+}
+
+fn heading(state: &State, reviewed: PhotoReview<'_>, ui: &mut egui::Ui) {
     // From the right, so that a long name gives way.
     let right = egui::Layout::right_to_left(egui::Align::Center);
     let row = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(row, right, |ui| {
         if let Some(verdict) = reviewed.settled() {
-            let text = format!("{} {verdict}", verdict_sign(verdict));
-            ui.colored_label(verdict_color(verdict, ui.visuals()), text);
+            verdict_label(state, verdict, ui);
         }
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             let body = egui::TextStyle::Body;

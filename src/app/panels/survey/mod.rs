@@ -1,5 +1,6 @@
 //! What the tools that draw on the surface have measured: numbers and a plot, beside the viewport.
 
+mod beside_line;
 mod clip;
 mod picked;
 mod profile;
@@ -8,6 +9,7 @@ mod volume;
 use crate::command::{Asking, Command, MeasuredTable};
 use crate::open_flight::survey::{SurveyStep, SurveyTool};
 use crate::state::State;
+use beside_line::beside_its_line;
 
 /// The small window of the tool that is taken; it can be moved.
 pub fn survey_panel(
@@ -29,30 +31,33 @@ pub fn survey_panel(
         SurveyTool::Volume => "Volume",
     };
     let mut stays = true;
-    egui::Window::new(title)
+    let mut window = egui::Window::new(title)
         .open(&mut stays)
         .constrain_to(place)
         .default_pos(place.left_bottom() + egui::vec2(8.0, -8.0))
         .pivot(egui::Align2::LEFT_BOTTOM)
         .default_width((place.width() - 16.0).clamp(180.0, 440.0))
-        .resizable([true, false])
-        .show(context, |ui| {
-            match drawn.tool {
-                SurveyTool::Profile => profile::profile(open, drawn, ui, commands),
-                SurveyTool::Volume => volume::volume(open, drawn, ui, commands),
-            }
-            if let Some(Err(why)) = &drawn.measured {
-                ui.colored_label(ui.visuals().warn_fg_color, why);
-            }
-            if drawn.points.is_empty() {
-                ui.weak(match drawn.tool {
-                    SurveyTool::Profile => "Click the points of a line on the surface.",
-                    SurveyTool::Volume => "Click the corners of a polygon on the surface.",
-                });
-            } else if !drawn.finished {
-                ui.weak("Double click or Enter ends it; Backspace takes a point back.");
-            }
-        });
+        .resizable([true, false]);
+    if drawn.tool == SurveyTool::Profile && drawn.finished {
+        window = beside_its_line(window, state, (open, drawn), context, place);
+    }
+    window.show(context, |ui| {
+        match drawn.tool {
+            SurveyTool::Profile => profile::profile(open, drawn, ui, commands),
+            SurveyTool::Volume => volume::volume(open, drawn, ui, commands),
+        }
+        if let Some(Err(why)) = &drawn.measured {
+            ui.colored_label(ui.visuals().warn_fg_color, why);
+        }
+        if drawn.points.is_empty() {
+            ui.weak(match drawn.tool {
+                SurveyTool::Profile => "Click the points of a line on the surface.",
+                SurveyTool::Volume => "Click the corners of a polygon on the surface.",
+            });
+        } else if !drawn.finished {
+            ui.weak("Double click or Enter ends it; Backspace takes a point back.");
+        }
+    });
     if !stays {
         commands.push(Command::Survey(SurveyStep::Leave));
     }
