@@ -85,10 +85,8 @@ impl OpenFlight {
                     Measure::Off
                 };
             }
-            Command::MeasureAnew => {
-                if self.pointer.measure != Measure::Off {
-                    self.pointer.measure = Measure::First;
-                }
+            Command::MeasureAnew if self.pointer.measure != Measure::Off => {
+                self.pointer.measure = Measure::First;
             }
             _ => {}
         }

@@ -215,6 +215,9 @@ mod tests {
 
     use super::*;
 
+    /// Where a feature lies beside a place, pixels, and about how many radians its descriptor is from a point's.
+    type Beside = ([f64; 2], f64);
+
     /// A descriptor as SIFT's are: not negative, of [`LENGTH`].
     fn descriptor(numbers: &[f64]) -> [u8; 128] {
         let length = numbers.iter().map(|n| n * n).sum::<f64>().sqrt();
@@ -240,8 +243,8 @@ mod tests {
     /// sees it: by hand.
     #[test]
     fn a_feature_in_its_place_that_stands_by_itself_is_found() {
-        // Where features of the third lie beside the place, and how many radians their descriptors are from the point's.
-        let cases: [(&[([f64; 2], f64)], bool); 9] = [
+        // What the third has there.
+        let cases: [(&[Beside], bool); 9] = [
             // Of its track, so that it is looked into.
             (&[([0.0, 0.0], 0.2)], false),
             (&[([0.5, 0.3], 0.2)], true),
