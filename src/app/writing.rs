@@ -90,6 +90,13 @@ impl State {
         true
     }
 
+    /// Whether it is the file of the flight whose changes were kept aside and are on the screen.
+    fn is_of_kept(&self, path: &Path) -> bool {
+        let open = self.open.as_deref();
+        let kept = open.and_then(|open| open.files.kept.as_ref());
+        kept.is_some_and(|kept| files::is_same_file(&kept.file, path))
+    }
+
     /// What is to be asked before a file is written: `None` where nothing stands there.
     fn standing(
         &self,
@@ -101,6 +108,9 @@ impl State {
             Standing::Free if !path.is_file() => None,
             Standing::Free => Some("It is empty."),
             Standing::Ours => Some("fragscale wrote it."),
+            Standing::Foreign if self.is_of_kept(path) => {
+                Some("It is the flight that these changes belong to.")
+            }
             Standing::Foreign if kind == Kind::Flight => {
                 Some("It is no flight file that fragscale wrote.")
             }

@@ -123,13 +123,26 @@ fn what_was_not_saved_is_there_again() {
     let save = Command::SaveAs(proposed.into());
     desk.harness.state_mut().apply(save);
     desk.settle();
+    assert!(desk.says("It is the flight that these changes belong to."));
     desk.click(Role::Button, "Replace it");
     assert!(!is_changed(&desk));
     assert_eq!(kept(&root).len(), 0);
+    // Its photos, which are read in full later, are still found.
+    let photos = &desk.open().files.photo_files;
+    let is_there = |path: &Option<PathBuf>| path.as_ref().is_some_and(|path| path.is_file());
+    assert!(photos.iter().all(|photo| is_there(&photo.path)));
+    let to = own.path().join("exported");
+    desk.harness
+        .state_mut()
+        .apply(Command::Export(to.clone().into()));
+    desk.settle();
+    assert!(to.join("scales.csv").is_file(), "{:?}", desk.texts());
     drop(desk);
 
     let mut desk = keeping(Some(&flight), &root);
     assert!(!desk.shows(Role::Button, "Open them") && !is_changed(&desk));
+    // A window that ends badly after saving leaves an empty folder, which goes now.
+    assert_eq!(fs::read_dir(&root).expect("a folder").count(), 0);
     assert_eq!(desk.open().settings().ground, HALF);
     assert!(
         desk.open().files.warnings.is_empty(),

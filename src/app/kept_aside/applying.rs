@@ -27,6 +27,7 @@ impl State {
 
     /// What was left behind goes once it was opened, and saved or discarded.
     fn let_go_of_left(&mut self) {
+        let on_screen = self.open.as_deref().map(|open| open.number);
         let shown = self
             .open
             .as_deref()
@@ -38,8 +39,11 @@ impl State {
             let file = left.folder.flight_file();
             // The disk is asked where the paths differ alone.
             if shown.is_some_and(|shown| shown == file || files::is_same_file(shown, &file)) {
-                left.is_open = true;
-            } else if left.is_open && !is_opening {
+                left.opened = on_screen;
+            } else if left.opened.is_some() && left.opened == on_screen {
+                // Saved: but its photos are still found by ways that lead through the folder.
+                left.withdraw();
+            } else if left.opened.is_some() && !is_opening {
                 self.kept_aside.left.remove(place).folder.remove();
                 continue;
             }

@@ -112,6 +112,14 @@ impl KeptFolder {
         self.path.join(LOCK).is_file()
     }
 
+    /// Takes away by what it is offered, and its flight: the folder itself stays.
+    pub(super) fn withdraw(&self) {
+        // What cannot be taken away goes with the folder.
+        for file in [self.whose_file(), self.flight_file()] {
+            let _ = fs::remove_file(file);
+        }
+    }
+
     /// Takes it away with all that was kept.
     pub(super) fn remove(&self) {
         // What is left of it where something cannot be taken away is offered to nobody, and goes at the next start.

@@ -65,10 +65,21 @@ struct Left {
     of: KeptOf,
     /// When they were kept.
     at: String,
-    /// Whether they are on the screen.
-    is_open: bool,
+    /// As which flight on the screen they were opened.
+    opened: Option<u64>,
+    /// Whether they are saved, and only the folder is still there.
+    is_withdrawn: bool,
     /// Whether she wants to see nothing of them now.
     is_put_off: bool,
+}
+
+impl Left {
+    /// Offers them no more, once.
+    fn withdraw(&mut self) {
+        if !std::mem::replace(&mut self.is_withdrawn, true) {
+            self.folder.withdraw();
+        }
+    }
 }
 
 /// A step with what was left behind, by its place.
@@ -105,7 +116,8 @@ impl KeptAside {
                 of: folder.whose()?,
                 at: at.format("%Y-%m-%d %H:%M").to_string(),
                 folder,
-                is_open: false,
+                opened: None,
+                is_withdrawn: false,
                 is_put_off: false,
             })
         });
@@ -120,7 +132,7 @@ impl KeptAside {
     /// What is offered: by its place whose it is, and when it was kept.
     pub fn offered(&self) -> impl Iterator<Item = (usize, &KeptOf, &str)> {
         let left = self.left.iter().enumerate();
-        let offered = left.filter(|(_, left)| !left.is_open && !left.is_put_off);
+        let offered = left.filter(|(_, left)| left.opened.is_none() && !left.is_put_off);
         offered.map(|(place, left)| (place, &left.of, left.at.as_str()))
     }
 
@@ -140,7 +152,7 @@ impl KeptAside {
     /// The window is closed, and she was asked about what was not saved.
     pub(crate) fn end(&mut self) {
         self.forget();
-        for left in self.left.drain(..).filter(|left| left.is_open) {
+        for left in self.left.drain(..).filter(|left| left.opened.is_some()) {
             left.folder.remove();
         }
     }
