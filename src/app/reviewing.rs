@@ -7,9 +7,12 @@ use crate::open_flight::OpenFlight;
 use crate::size_distributions::Page;
 use crate::state::{Severity, State};
 
-/// The field of the note: a key brings the cursor into it.
-pub(crate) fn note_field() -> egui::Id {
-    egui::Id::unique("note of the review")
+/// The field of the note in the review, and in the photo's own panel: a key brings the cursor into it.
+pub(crate) fn note_field(tab: Tab) -> egui::Id {
+    egui::Id::unique(match tab {
+        Tab::Review => "note of the review",
+        _ => "note on the photo",
+    })
 }
 
 impl State {
@@ -58,8 +61,9 @@ impl State {
             }
             ReviewStep::TakeNote(photo) => self.take_note(Some(photo)),
             ReviewStep::WriteNote => {
+                let field = note_field(self.tab);
                 self.context
-                    .memory_mut(|memory| memory.request_focus(note_field()));
+                    .memory_mut(|memory| memory.request_focus(field));
             }
             ReviewStep::Accept => self.decide_and_go_on(DecisionKind::Accepted),
             ReviewStep::LeaveOut => self.decide_and_go_on(DecisionKind::LeftOut),

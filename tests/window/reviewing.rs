@@ -379,3 +379,19 @@ fn what_the_error_does_to_a_size_is_said() {
     desk.press(NONE, Key::Escape);
     assert!(says(&desk, &format!("P80 {error}")));
 }
+
+/// W brings the cursor into the note on a photo's own panel as in the review: what was typed went to the shortcuts.
+#[test]
+fn a_note_is_typed_on_the_photos_own_panel_too() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.click(Role::Tab, "Photo");
+    desk.press(NONE, Key::W);
+    desk.harness.event(Event::Text("blurred".to_owned()));
+    desk.settle();
+    desk.press(NONE, Key::Enter);
+    desk.press(NONE, Key::Delete);
+    let open = desk.open();
+    let photo = open.review.photo(open.selected.expect("a photo"));
+    let decision = photo.expect("a photo").decision.cloned();
+    assert_eq!(decision.expect("a decision").note, "blurred");
+}

@@ -2,8 +2,8 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, beside_photos, keys, on_fragments, on_plan};
-use crate::command::{Command, ReviewStep};
+use super::{Action, beside_photos, keys, on_fragments, on_pile, on_plan};
+use crate::command::{Command, ReviewStep, Tab};
 use crate::fragments::FragmentStep;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::Drawn;
@@ -13,6 +13,17 @@ use crate::state::State;
 fn reviewed(state: &State, step: ReviewStep) -> Option<Command> {
     let open = state.reviewed_flight().filter(|_| state.asking.is_none())?;
     open.selected.map(|_| Command::Review(step))
+}
+
+/// The same on the photo's own panel, which has a note, too.
+fn on_photo_panel(state: &State, step: ReviewStep) -> Option<Command> {
+    let in_sight = state.tab == Tab::Photo && state.preferences.right_open;
+    let is_selected = state
+        .open
+        .as_deref()
+        .is_some_and(|open| open.selected.is_some());
+    let can = in_sight && is_selected && state.asking.is_none();
+    on_pile(state, Command::Review(step)).filter(|_| can)
 }
 
 /// Whether points are set with the mouse: Delete would be meant for the last of them.
@@ -90,7 +101,10 @@ actions! {
         label: "Write the note",
         hover: "Type why the photo is accepted or left out; Enter accepts a doubtful one with it",
         shortcut: keys(Modifiers::NONE, Key::W),
-        command: |state| reviewed(state, ReviewStep::WriteNote),
+        command: |state| {
+            let step = ReviewStep::WriteNote;
+            reviewed(state, step.clone()).or_else(|| on_photo_panel(state, step))
+        },
     }
 }
 

@@ -248,7 +248,7 @@ impl State {
         self.said_there = said.map(|text| (text, (self.page, photo)));
     }
 
-    /// Says that a file was not taken, until the next of its kind is, or another photo or page is looked at.
+    /// Says that a file was not taken, or nothing written, until the next of its kind is, or another photo or page is looked at.
     pub(crate) fn refuse_import(&mut self, task: Task, text: &str) {
         let (_, photo) = self.place();
         self.say_of_photo(Severity::Error, text, photo);
@@ -256,7 +256,7 @@ impl State {
         self.import_refused = said.map(|(text, place)| (task, text, place));
     }
 
-    /// A file of that kind was taken: what was wrong with the one before is mended. The log keeps it.
+    /// A file of that kind was taken, or written: what was wrong with the one before is mended. The log keeps it.
     pub(crate) fn import_taken(&mut self, task: Task) {
         self.put_away_import(|(of, ..)| *of == task);
     }

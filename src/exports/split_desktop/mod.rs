@@ -269,7 +269,7 @@ fn still_there(request: &ExportRequest<'_>, chosen: &[usize]) -> Result<(), Faul
                 "the photos' files are gone since the flight was opened ({} is not there)",
                 first.display()
             ),
-            "bring them back, or open the flight again to export the scales alone",
+            "bring them back; for the scales alone take the folder of the photos out of the flight (photos.folder), and open it again",
         )),
         _ => Ok(()),
     }

@@ -1,9 +1,10 @@
 //! What the engineer decides of the selected photo, with her note.
 
-use crate::command::Command;
+use crate::command::{Command, Tab};
 use crate::flight::{DecisionKind, PhotoReview};
 use crate::open_flight::OpenFlight;
 use crate::panels::field::note::NoteField;
+use crate::reviewing::note_field;
 
 /// Draws the decision, the note, and what can be decided.
 pub(super) fn decision(
@@ -30,7 +31,7 @@ pub(super) fn decision(
     }
     let decided = reviewed.decision.map(|decision| decision.kind);
     let field = NoteField {
-        id: egui::Id::unique("note on the photo"),
+        id: note_field(Tab::Photo),
         label: "Note on the photo",
         hint: "Note: why",
         enter: None,

@@ -7,7 +7,7 @@ use egui::RichText;
 pub(super) use row_menu::row_menu;
 
 use crate::actions::{self, Action};
-use crate::command::{Command, ReviewStep};
+use crate::command::{Command, ReviewStep, Tab};
 use crate::flight::{DecisionKind, OnPhoto, PhotoReview};
 use crate::names::{self, unbroken};
 use crate::open_flight::OpenFlight;
@@ -198,7 +198,7 @@ fn decide(
         return;
     };
     let field = NoteField {
-        id: note_field(),
+        id: note_field(Tab::Review),
         label: "Note of the review",
         hint: "Note: why (W)",
         enter: (actions::review::ACCEPT.command)(state),
