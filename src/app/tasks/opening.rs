@@ -123,7 +123,7 @@ impl State {
                     self.ask(Some(Asking::Choose));
                     return;
                 }
-                self.refuse_import(Task::OPEN, &why);
+                self.say(Severity::Error, &why);
                 self.from_photos.offered = photos;
                 // A wrong surface does not make forget the flight that it was for.
                 self.tried = tried.or_else(|| self.tried.take());
