@@ -235,6 +235,12 @@ impl Default for Asked {
 }
 
 impl Asked {
+    /// Whether psd is asked for with what the sizes of all flights are held against.
+    pub fn names_reference(&self) -> bool {
+        let mut steps = self.steps.iter();
+        steps.any(|asked| asked.step == Step::Psd && asked.options.contains_key("reference"))
+    }
+
     /// The units that commands write.
     pub const UNITS: [&'static str; 5] = ["mm", "cm", "m", "in", "ft"];
 

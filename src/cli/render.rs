@@ -20,7 +20,7 @@ use crate::formats::photos::photo_metadata;
 use crate::formats::{self, FileError};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
-use crate::opening::{ComparedFlight, Opened, PhotoFile, compare_flown};
+use crate::opening::{ComparedFlight, Opened, PhotoFile, StatedTakeOff, compare_flown};
 use crate::picture;
 use crate::render::{
     Background, ColorBy, Gpu, MOST_PIXELS, Orbit, PhotoGeometry, PhotoImage, Renderer, Scope,
@@ -241,8 +241,9 @@ fn compared(
 ) -> Result<Option<ComparedFlight>, FileError> {
     let of = arguments.flight.of_mission(opened);
     let mission = arguments.mission.as_deref();
+    let take_off = arguments.take_off.map(StatedTakeOff::Given);
     mission
-        .map(|mission| compare_flown(&[mission], of, arguments.take_off, progress))
+        .map(|mission| compare_flown(&[mission], of, take_off, progress))
         .transpose()
 }
 

@@ -52,7 +52,7 @@ pub struct ComparedFlight {
 pub fn compare_flown(
     missions: &[impl AsRef<Path>],
     of: FlightOfMission<'_>,
-    take_off: Option<DVec2>,
+    take_off: Option<StatedTakeOff>,
     progress: &Progress,
 ) -> Result<ComparedFlight, FileError> {
     let in_flight = |fault: Fault| FileError::new(of.file, fault);
@@ -69,7 +69,6 @@ pub fn compare_flown(
     };
     let flown_at = parts.photos.iter().map(|photo| photo.pose.center);
     let flown_at: Vec<DVec2> = flown_at.filter_map(on_earth).collect();
-    let took_off = take_off.and_then(|place| on_earth(place.extend(0.0)));
     let (mut planned, mut notes) = (Vec::new(), Vec::new());
     for mission in missions {
         let mission = mission.as_ref();
@@ -80,7 +79,8 @@ pub fn compare_flown(
             ..
         } = read_mission(mission)?;
         is_near(&told, &flown_at).map_err(in_mission)?;
-        if let Some(place) = took_off {
+        let take_off = take_off.and_then(|stated| stated.of(&told));
+        if let Some(place) = take_off.and_then(|place| on_earth(place.extend(0.0))) {
             takes_off_near(&told, place).map_err(in_mission)?;
             let said = takes_off_elsewhere(&told, place);
             notes.extend(said.map(|said| format!("{}: {said}", mission.display())));
@@ -117,6 +117,24 @@ pub fn compare_flown(
         flown,
         notes,
     })
+}
+
+/// Where the drone took off in the world, x and y, as it is said beside its mission.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StatedTakeOff {
+    /// Whatever the mission says.
+    Given(DVec2),
+    /// Where the mission says none.
+    InPlaceOfNone(DVec2),
+}
+
+impl StatedTakeOff {
+    fn of(self, mission: &Mission) -> Option<DVec2> {
+        match self {
+            Self::Given(place) => Some(place),
+            Self::InPlaceOfNone(place) => mission.take_off.is_none().then_some(place),
+        }
+    }
 }
 
 /// Whether the mission lies where the flight was flown. Photos that are called as the planned ones would else be told to be

@@ -56,7 +56,7 @@ use fragscale_fragmentation as fragmentation;
 pub use areas::{Areas, places};
 pub use dropped::Dropped;
 pub use evidence::look_up;
-pub use flown::{ComparedFlight, FlightOfMission, compare_flown};
+pub use flown::{ComparedFlight, FlightOfMission, StatedTakeOff, compare_flown};
 pub use georeferencing::{
     BehindFlight, GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind,
     LengthResidual, PositionResidual, behind_flight, control_file, control_text, flight_text_of,

@@ -93,9 +93,9 @@ impl State {
             (path, read.map_err(|error| error.to_string()))
         };
         self.start(Task::READ_CONTROL, work, |state, (path, read)| match read {
-            Err(message) => state.refuse_import(Task::READ_CONTROL, &message),
+            Err(message) => state.say_until_mended(Task::READ_CONTROL, &message),
             Ok((list, warnings)) => {
-                state.import_taken(Task::READ_CONTROL);
+                state.mended(Task::READ_CONTROL);
                 for warning in warnings {
                     let text = format!("{}: {warning}", path.display());
                     state.say(Severity::Warning, &text);

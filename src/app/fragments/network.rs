@@ -28,7 +28,7 @@ impl State {
         };
         self.start(Task::READ_NETWORK, work, move |state, read| match read {
             Ok(model) => {
-                state.import_taken(Task::READ_NETWORK);
+                state.mended(Task::READ_NETWORK);
                 let text = format!("network {}: ready to outline fragments", model.name());
                 state.say(Severity::Note, &text);
                 state.network.model = Some(Arc::new(model));
@@ -40,7 +40,7 @@ impl State {
                 }
             }
             Err(message) => {
-                state.refuse_import(Task::READ_NETWORK, &message);
+                state.say_until_mended(Task::READ_NETWORK, &message);
                 state.network.refused = Some(message);
             }
         });

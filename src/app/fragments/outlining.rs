@@ -153,7 +153,7 @@ impl State {
         };
         self.start(Task::READ_MASKS, work, move |state, read| match read {
             Ok((labels, notes)) => {
-                state.import_taken(Task::READ_MASKS);
+                state.mended(Task::READ_MASKS);
                 let notes = notes.into_iter().map(|note| format!("{called}: {note}"));
                 let notes: Vec<String> = notes.collect();
                 for note in &notes {
@@ -172,7 +172,7 @@ impl State {
                 }
             }
             Err(message) => {
-                state.refuse_import(Task::READ_MASKS, &message);
+                state.say_until_mended(Task::READ_MASKS, &message);
                 if let Some(open) = &mut state.open {
                     open.fragments.masks_refused = Some(message);
                 }

@@ -36,7 +36,7 @@ impl State {
     fn take_areas(&mut self, tool: PlanTool, read: Result<(Vec<Polygon>, Vec<String>), String>) {
         match read {
             Ok((areas, said)) => {
-                self.import_taken(Task::READ_AREAS);
+                self.mended(Task::READ_AREAS);
                 for sentence in said {
                     self.say(Severity::Warning, &sentence);
                 }
@@ -47,7 +47,7 @@ impl State {
                     self.plan_step(super::PlanStep::Ask(Box::new(asked)));
                 }
             }
-            Err(why) => self.refuse_import(Task::READ_AREAS, &why),
+            Err(why) => self.say_until_mended(Task::READ_AREAS, &why),
         }
     }
 }

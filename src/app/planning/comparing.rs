@@ -9,9 +9,9 @@ use crate::command::{Command, Destination};
 use crate::exports::{DrawingFormat, FlownFigure, FlownReport, flown_csv, flown_json};
 use crate::fault::Fault;
 use crate::files::{self, Kind};
-use crate::formats::{self, FileError, read_mission};
+use crate::formats::{self, FileError};
 use crate::jobs::Progress;
-use crate::opening::{FlightOfMission, compare_flown};
+use crate::opening::{FlightOfMission, StatedTakeOff, compare_flown};
 use crate::size_distributions::Page;
 use crate::state::{Severity, State};
 use crate::tasks::Task;
@@ -64,19 +64,18 @@ impl State {
                 crs: crs.as_deref(),
             };
             // Nobody gave that of the plan on the screen for this mission: it stands in for none.
-            let says_none = read_mission(&path)?.mission.take_off.is_none();
-            let take_off = of_plan.filter(|_| says_none);
+            let take_off = of_plan.map(StatedTakeOff::InPlaceOfNone);
             let compared = compare_flown(&[&path], of, take_off, progress)?;
             Ok::<_, FileError>(FlownMission::of(&path, compared, &flight))
         };
         self.start(Task::FLOWN, work, |state, flown| match flown {
             Ok(flown) => {
-                state.import_taken(Task::FLOWN);
+                state.mended(Task::FLOWN);
                 if let Some(open) = &mut state.open {
                     open.planning.flown = Some(Arc::new(flown));
                 }
             }
-            Err(error) => state.refuse_import(Task::FLOWN, &error.to_string()),
+            Err(error) => state.say_until_mended(Task::FLOWN, &error.to_string()),
         });
     }
 

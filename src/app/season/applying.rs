@@ -220,9 +220,7 @@ fn look(
         }
     };
     // Before the steps that are chosen: one that is left out takes along what the season says of it.
-    let mut asked = season.asked.steps.iter();
-    let of_season =
-        asked.any(|asked| asked.step == Step::Psd && asked.options.contains_key("reference"));
+    let of_season = season.asked.names_reference();
     if let Some(steps) = &form.steps {
         season.asked.set_steps(steps);
     }

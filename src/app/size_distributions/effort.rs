@@ -42,9 +42,9 @@ impl State {
     /// Takes the times that were read.
     fn take_effort(&mut self, path: &Path, read: Result<(Effort, Vec<String>), String>) {
         match read {
-            Err(why) => self.refuse_import(Task::READ_EFFORT, &why),
+            Err(why) => self.say_until_mended(Task::READ_EFFORT, &why),
             Ok((effort, warnings)) => {
-                self.import_taken(Task::READ_EFFORT);
+                self.mended(Task::READ_EFFORT);
                 let name = path.file_name().unwrap_or_default();
                 let name = name.to_string_lossy().into_owned();
                 for warning in &warnings {

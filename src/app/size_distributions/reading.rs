@@ -160,14 +160,14 @@ impl State {
                     self.page = Page::SizeDistributions;
                 }
                 if sources.iter().any(Result::is_ok) {
-                    self.import_taken(Task::READ_DISTRIBUTIONS);
+                    self.mended(Task::READ_DISTRIBUTIONS);
                 }
                 for source in sources {
                     match source {
                         Ok(source) => {
                             self.add_source(source);
                         }
-                        Err(why) => self.refuse_import(Task::READ_DISTRIBUTIONS, &why),
+                        Err(why) => self.say_until_mended(Task::READ_DISTRIBUTIONS, &why),
                     }
                 }
                 if !of_flight.is_empty() {
@@ -175,7 +175,7 @@ impl State {
                 }
             }
             Read::Pasted(Err(why)) => {
-                self.refuse_import(Task::READ_DISTRIBUTIONS, &why);
+                self.say_until_mended(Task::READ_DISTRIBUTIONS, &why);
                 self.distributions.paste.refused = Some(why);
             }
             Read::Pasted(Ok(source)) => {

@@ -143,7 +143,7 @@ pub struct State {
     /// What was said last of the photo on the screen, and where that was.
     said_there: Option<(String, Place)>,
     /// The import that was refused last, what was said of it, and where that was.
-    import_refused: Option<(Task, String, Place)>,
+    may_be_mended: Option<(Task, String, Place)>,
     /// What was said of the last undo or redo, and how many steps had been made until then.
     undo_said: Option<(String, u64)>,
     /// The last error, shown over the viewport until it is put away.
@@ -199,7 +199,7 @@ impl State {
             log: Vec::new(),
             log_before: 0,
             said_there: None,
-            import_refused: None,
+            may_be_mended: None,
             undo_said: None,
             notice: None,
             tab: Tab::default(),
@@ -249,26 +249,26 @@ impl State {
     }
 
     /// Says that a file was not taken, or nothing written, until the next of its kind is, or another photo or page is looked at.
-    pub(crate) fn refuse_import(&mut self, task: Task, text: &str) {
+    pub(crate) fn say_until_mended(&mut self, task: Task, text: &str) {
         let (_, photo) = self.place();
         self.say_of_photo(Severity::Error, text, photo);
         let said = self.said_there.clone();
-        self.import_refused = said.map(|(text, place)| (task, text, place));
+        self.may_be_mended = said.map(|(text, place)| (task, text, place));
     }
 
     /// A file of that kind was taken, or written: what was wrong with the one before is mended. The log keeps it.
-    pub(crate) fn import_taken(&mut self, task: Task) {
-        self.put_away_import(|(of, ..)| *of == task);
+    pub(crate) fn mended(&mut self, task: Task) {
+        self.put_away_mended(|(of, ..)| *of == task);
     }
 
     /// Another photo or page is looked at, perhaps: what was wrong with a file there is no matter here.
     pub(crate) fn look_at_notice(&mut self) {
         let now = self.place();
-        self.put_away_import(|(.., place)| *place != now);
+        self.put_away_mended(|(.., place)| *place != now);
     }
 
-    fn put_away_import(&mut self, is_old: impl FnOnce(&(Task, String, Place)) -> bool) {
-        if let Some((_, text, _)) = self.import_refused.take_if(|refused| is_old(refused)) {
+    fn put_away_mended(&mut self, is_old: impl FnOnce(&(Task, String, Place)) -> bool) {
+        if let Some((_, text, _)) = self.may_be_mended.take_if(|refused| is_old(refused)) {
             self.notice.take_if(|notice| notice.text == text);
         }
     }
@@ -353,19 +353,19 @@ mod tests {
     fn a_refused_file_is_no_matter_elsewhere() {
         let mut state = State::new(egui::Context::default(), Preferences::default());
         let [tables, clouds] = ["Reading", "Cloud"].map(Task::new);
-        state.refuse_import(tables, "a.csv: it is empty");
-        state.import_taken(clouds);
+        state.say_until_mended(tables, "a.csv: it is empty");
+        state.mended(clouds);
         state.look_at_notice();
         assert!(state.notice.is_some());
-        state.import_taken(tables);
+        state.mended(tables);
         assert_eq!(state.notice, None);
-        state.refuse_import(tables, "b.csv: it is empty");
+        state.say_until_mended(tables, "b.csv: it is empty");
         state.page = Page::Map;
         state.look_at_notice();
         assert_eq!(state.notice, None);
-        state.refuse_import(tables, "c.csv: it is empty");
+        state.say_until_mended(tables, "c.csv: it is empty");
         state.say(Severity::Error, "not written");
-        state.import_taken(tables);
+        state.mended(tables);
         assert!(state.notice.is_some());
     }
 

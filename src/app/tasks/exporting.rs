@@ -111,9 +111,9 @@ impl State {
         self.start(Task::EXPORT, work, |state, exported: Result<_, String>| {
             let (sentence, warnings, flight, took) = match exported {
                 Ok(exported) => exported,
-                Err(message) => return state.refuse_import(Task::EXPORT, &message),
+                Err(message) => return state.say_until_mended(Task::EXPORT, &message),
             };
-            state.import_taken(Task::EXPORT);
+            state.mended(Task::EXPORT);
             state.note_step("Export", &flight, took);
             for warning in warnings {
                 state.say(Severity::Warning, &warning);

@@ -60,7 +60,7 @@ impl State {
         };
         self.start(task, work, move |state, read| match read {
             Ok((path, second)) => {
-                state.import_taken(task);
+                state.mended(task);
                 for warning in &second.warnings {
                     state.say(Severity::Warning, warning);
                 }
@@ -69,7 +69,7 @@ impl State {
                     take(open, path, second);
                 }
             }
-            Err(error) => state.refuse_import(task, &error.to_string()),
+            Err(error) => state.say_until_mended(task, &error.to_string()),
         });
     }
 

@@ -266,8 +266,7 @@ impl Season {
     /// That psd is passed over, and for whom: nobody says what their sizes are held against.
     fn without_reference(&self, flights: &[SeasonFlight]) -> Option<String> {
         let mut steps = self.asked.steps.iter();
-        let psd = steps.find(|asked| asked.step == Step::Psd)?;
-        if psd.options.contains_key("reference") {
+        if !steps.any(|asked| asked.step == Step::Psd) || self.asked.names_reference() {
             return None;
         }
         let without = flights.iter().filter(|flight| flight.reference.is_none());

@@ -14,7 +14,7 @@ use crate::exports::{self, DrawingFormat, FlownFigure, FlownReport};
 use crate::files::Kind;
 use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::opening::compare_flown;
+use crate::opening::{StatedTakeOff, compare_flown};
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct FlownArguments {
@@ -57,7 +57,8 @@ pub(in crate::cli) fn flown(
     let opened = arguments.flight.open(progress)?;
     outputs.read(&opened.read)?;
     let of = arguments.flight.of_mission(&opened);
-    let compared = compare_flown(&arguments.mission, of, arguments.take_off, progress);
+    let take_off = arguments.take_off.map(StatedTakeOff::Given);
+    let compared = compare_flown(&arguments.mission, of, take_off, progress);
     let compared = compared.map_err(|error| error.to_string())?;
     let parts = opened.flight.parts();
     let report = FlownReport {

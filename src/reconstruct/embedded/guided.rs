@@ -17,6 +17,7 @@ use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
+use super::nearest_two::radians;
 use crate::fault::Fault;
 use crate::jobs::Progress;
 
@@ -32,8 +33,6 @@ const FARTHEST: f64 = 0.7;
 const RATIO: f64 = 0.85;
 /// From farther round a stone looks otherwise: cosine of the angle between two rays (53 degrees).
 const ROUND: f64 = 0.6;
-/// The length of a descriptor.
-const LENGTH: f64 = 512.0;
 
 /// Which features of photos are points that the model has, beside those of its tracks. `done` is how far the work is in which this
 /// is a step.
@@ -202,9 +201,7 @@ impl<'a> Photo<'a> {
 /// Radians between two descriptors.
 fn angle(one: &[u8], other: &[u8]) -> f64 {
     let products = one.iter().zip(other);
-    let products = products.map(|(a, b)| u32::from(*a) * u32::from(*b));
-    let product: u32 = products.sum();
-    (f64::from(product) / (LENGTH * LENGTH)).min(1.0).acos()
+    radians(products.map(|(a, b)| u32::from(*a) * u32::from(*b)).sum())
 }
 
 #[cfg(test)]
@@ -214,14 +211,15 @@ mod tests {
     use fragscale_core::split_mix::SplitMix;
 
     use super::*;
+    use crate::embedded::nearest_two::NORM;
 
     /// Where a feature lies beside a place, pixels, and about how many radians its descriptor is from a point's.
     type Beside = ([f64; 2], f64);
 
-    /// A descriptor as SIFT's are: not negative, of [`LENGTH`].
+    /// A descriptor as SIFT's are: not negative, of [`NORM`].
     fn descriptor(numbers: &[f64]) -> [u8; 128] {
         let length = numbers.iter().map(|n| n * n).sum::<f64>().sqrt();
-        std::array::from_fn(|at| (numbers[at] / length * LENGTH).round() as u8)
+        std::array::from_fn(|at| (numbers[at] / length * NORM).round() as u8)
     }
 
     fn random(random: &mut SplitMix) -> Vec<f64> {
@@ -239,30 +237,12 @@ mod tests {
         mixed.map(|(a, b)| a + radians * b).collect()
     }
 
-    /// Three photos side by side, 10 above points that the first two see; what the third has around the place of each says whether it
-    /// sees it: by hand.
-    #[test]
-    fn a_feature_in_its_place_that_stands_by_itself_is_found() {
-        // What the third has there.
-        let cases: [(&[Beside], bool); 9] = [
-            // Of its track, so that it is looked into.
-            (&[([0.0, 0.0], 0.2)], false),
-            (&[([0.5, 0.3], 0.2)], true),
-            // Nothing is there, or what is there is another stone.
-            (&[([2.5, 0.0], 0.2)], false),
-            (&[([0.5, 0.3], 9.0)], false),
-            // Another one like it around: which is it?
-            (&[([0.5, 0.3], 0.2), ([8.0, 0.0], 0.2)], false),
-            (&[([0.5, 0.3], 0.2), ([8.0, 0.0], 0.6)], true),
-            // Far off, or the same twice, it does not matter.
-            (&[([0.5, 0.3], 0.2), ([30.0, 0.0], 0.2)], true),
-            (&[([0.5, 0.3], 0.2), ([0.5, 0.3], 0.2)], true),
-            // Of two in its place the one that looks like it.
-            (&[([0.1, 0.0], 9.0), ([1.0, 0.0], 0.2)], true),
-        ];
+    /// Three photos 10 above points that the first two see, at -1 and 0 beside them; the third, at `third`, has what a case says around the
+    /// place of each.
+    fn scene(cases: &[&[Beside]], focal: f64, third: f64) -> (Reconstruction, FeatureStore) {
         let mut source = SplitMix(5);
         let store = FeatureStore::new();
-        let lens = vec![1000.0, 1000.0, 500.0, 500.0];
+        let lens = vec![focal, focal, 500.0, 500.0];
         let camera = Camera::new(1, CameraModelKind::Pinhole, 1000, 1000, lens).unwrap();
         let mut model = Reconstruction::new();
         model.add_camera(camera.clone()).unwrap();
@@ -270,15 +250,14 @@ mod tests {
         store.add_camera(camera.clone()).unwrap();
         let points = (0..cases.len()).map(|at| Vec3::new(-4.0 + at as f64, 0.3, 10.0));
         let points: Vec<(Vec3, Vec<f64>)> = points.map(|at| (at, random(&mut source))).collect();
-        let wanted: Vec<bool> = cases.iter().map(|case| case.1).collect();
-        for (id, x) in [(1, -1.0), (2, 0.0), (3, 1.0)] {
+        for (id, x) in [(1, -1.0), (2, 0.0), (3, third)] {
             let mut pose = Rigid3::identity();
             pose.translation.x = -x;
             let seen = |at: &Vec3| camera.cam_to_img(&pose.transform_point(at)).unwrap();
             let features: Vec<(Vec2, Vec<f64>)> = points
                 .iter()
-                .zip(&cases)
-                .flat_map(|((at, own), (around, _))| match id {
+                .zip(cases)
+                .flat_map(|((at, own), around)| match id {
                     3 => around
                         .iter()
                         .map(|&(by, radians)| {
@@ -302,29 +281,70 @@ mod tests {
             model.register_image(id).unwrap();
         }
         let numbers = 0..u32::try_from(points.len()).unwrap();
-        for (number, (at, _)) in numbers.clone().zip(&points) {
+        for (number, (at, _)) in numbers.zip(&points) {
             let track = [1, 2].map(|id| TrackEntry::new(id, number));
             model.add_point3d(*at, track.to_vec(), [0; 3]).unwrap();
         }
+        (model, store)
+    }
+
+    /// Which points the third sees, once it has the first in its track: without one it is not looked into.
+    fn graph_of(model: &mut Reconstruction, store: &FeatureStore) -> MatchGraph {
         let progress = Progress::default();
-        let none = seen_again(&model, &store, &progress, [0, 2]).unwrap();
+        let none = seen_again(model, store, &progress, [0, 2]).unwrap();
         assert_eq!(none.pair_count(), 0);
         let first = model.point3d_ids()[0];
         model.add_observation(first, TrackEntry::new(3, 0)).unwrap();
-        let graph = seen_again(&model, &store, &progress, [0, 2]).unwrap();
-        let is_found: Vec<bool> = numbers
-            .map(|number| {
-                let found = [1, 2].map(|id| graph.find_correspondences(id, number).len());
-                found.iter().sum::<usize>() == 1
-            })
-            .collect();
-        assert_eq!(is_found, wanted);
+        seen_again(model, store, &progress, [0, 2]).unwrap()
+    }
+
+    fn finds(graph: &MatchGraph, point: u32) -> bool {
+        let found = [1, 2].map(|id| graph.find_correspondences(id, point).len());
+        found.iter().sum::<usize>() == 1
+    }
+
+    /// What the third has around the place of each point says whether it sees it: by hand.
+    #[test]
+    fn a_feature_in_its_place_that_stands_by_itself_is_found() {
+        // What the third has there.
+        let cases: [(&[Beside], bool); 9] = [
+            // Of its track, so that it is looked into.
+            (&[([0.0, 0.0], 0.2)], false),
+            (&[([0.5, 0.3], 0.2)], true),
+            // Nothing is there, or what is there is another stone.
+            (&[([2.5, 0.0], 0.2)], false),
+            (&[([0.5, 0.3], 9.0)], false),
+            // Another one like it around: which is it?
+            (&[([0.5, 0.3], 0.2), ([8.0, 0.0], 0.2)], false),
+            (&[([0.5, 0.3], 0.2), ([8.0, 0.0], 0.6)], true),
+            // Far off, or the same twice, it does not matter.
+            (&[([0.5, 0.3], 0.2), ([30.0, 0.0], 0.2)], true),
+            (&[([0.5, 0.3], 0.2), ([0.5, 0.3], 0.2)], true),
+            // Of two in its place the one that looks like it.
+            (&[([0.1, 0.0], 9.0), ([1.0, 0.0], 0.2)], true),
+        ];
+        let around = cases.map(|case| case.0);
+        let (mut model, store) = scene(&around, 1000.0, 1.0);
+        let graph = graph_of(&mut model, &store);
+        let is_found: Vec<bool> = (0..9).map(|point| finds(&graph, point)).collect();
+        assert_eq!(is_found, cases.map(|case| case.1));
         // Of the last it is the second feature, the last of the photo.
         let of_last = [1, 2]
             .map(|id| graph.find_correspondences(id, 8).to_vec())
             .concat();
         assert_eq!(of_last[0].point2d_idx as usize, store.num_keypoints(3) - 1);
+        let progress = Progress::default();
         progress.cancel();
         assert!(seen_again(&model, &store, &progress, [0, 2]).is_err());
+    }
+
+    /// The second point lies 23 and 33 beside the third photo, 10 below: seen from the second photo 50 and 56 degrees round.
+    #[test]
+    fn from_farther_round_nothing_is_looked_for() {
+        for (third, wanted) in [(20.0, true), (30.0, false)] {
+            let there: &[Beside] = &[([0.5, 0.3], 0.2)];
+            let (mut model, store) = scene(&[&[([0.0, 0.0], 0.2)], there], 100.0, third);
+            assert_eq!(finds(&graph_of(&mut model, &store), 1), wanted, "{third}");
+        }
     }
 }

@@ -10,6 +10,14 @@ use rayon::prelude::*;
 
 /// Bytes of a descriptor.
 pub(super) const LENGTH: usize = 128;
+/// How long a descriptor is as a vector.
+pub(super) const NORM: f64 = 512.0;
+
+/// Radians between two descriptors, of their product.
+pub(super) fn radians(product: u32) -> f64 {
+    (f64::from(product) / (NORM * NORM)).min(1.0).acos()
+}
+
 /// Rows that one thread works on at a time, and columns: their products stay in the cache.
 const ROWS: usize = 256;
 const COLUMNS: usize = 256;

@@ -9,7 +9,7 @@ use cumulus3d_matching::{MatcherBackend, Top2};
 use rayon::prelude::*;
 
 use super::image_id;
-use super::nearest_two::Products;
+use super::nearest_two::{Products, radians};
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::photo_set::PhotoSet;
@@ -24,8 +24,6 @@ const PARTNERS: usize = 24;
 const FEWEST: usize = 2;
 /// The nearest descriptor is at most so much of the angle away that the second is (Lowe 2004, section 7.1).
 const RATIO: f64 = 0.8;
-/// Descriptors are so long.
-const LENGTH: f64 = 512.0;
 /// Pairs between two looks at the clock and at cancel.
 const AT_ONCE: usize = 2048;
 
@@ -95,10 +93,7 @@ fn largest(store: &FeatureStore, photo: usize) -> Vec<u8> {
 fn common(first: &[u8], second: &[u8]) -> usize {
     const BYTES: usize = 128;
     let (rows, columns) = Products.top2(first, first.len() / BYTES, second, second.len() / BYTES);
-    let is_clear = |top: &Top2| {
-        let angle = |product: u32| (f64::from(product) / (LENGTH * LENGTH)).min(1.0).acos();
-        angle(top.best) < RATIO * angle(top.second)
-    };
+    let is_clear = |top: &Top2| radians(top.best) < RATIO * radians(top.second);
     let both = rows.iter().zip(0_u32..).filter(|(top, row)| {
         let back = columns.get(top.idx as usize);
         back.is_some_and(|back| back.idx == *row && is_clear(top) && is_clear(back))
@@ -115,6 +110,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
+    use crate::embedded::nearest_two::NORM;
     use crate::photo_set::{Place, SurveyPhoto};
 
     /// A flight line of 80 photos, each of which shows 40 features of a strip and shares all but 8 with the
@@ -126,7 +122,7 @@ mod tests {
         let mut descriptor = move || -> [u8; 128] {
             let numbers = [(); 128].map(|()| (random.next() >> 40) as f64 / f64::from(1 << 24));
             let length = numbers.iter().map(|n| n * n * n * n).sum::<f64>().sqrt();
-            numbers.map(|n| (n * n / length * LENGTH) as u8)
+            numbers.map(|n| (n * n / length * NORM) as u8)
         };
         let strip: Vec<[u8; 128]> = (0..COUNT * 8 + 40).map(|_| descriptor()).collect();
         let store = FeatureStore::new();
