@@ -60,7 +60,7 @@
 //! | a package | `src/formats/packages/mod.rs` | a row of `packages!`; the reader is a folder or a file beside it; `formats/candidates/mod.rs` says what of a folder is its, `docs/flights.md` has a line |
 //! | a column of the photo table | `src/exports/photo_columns.rs` | one row for window, CSV, text and sheet; the contract names those of the CSV |
 //! | an undoable setting of the flight | `src/flight/mod.rs` | `FlightSettings`: undo goes by it; `flight/file/` keeps it, `app/panels/flight_settings/` shows it |
-//! | a reason for doubt | `src/flight/doubt/mod.rs` | a variant, its sentence, its word (`kind.rs`) and what shows it (`review/sight.rs`); found in `flight/verdict/`, `flight/placement.rs`, and in `opening/`: `evidence.rs`, `photo_checks.rs`, `photo_files.rs`, `photo_places.rs`, `open/image_points.rs`, `pixels/`; `opening/health.rs` says under which word of the strip it counts and what mends it |
+//! | a reason for doubt | `src/flight/doubt/mod.rs` | a variant, its sentence, its word (`kind.rs`) and what shows it (`review/sight.rs`); found in `flight/verdict/`, `flight/placement.rs`, and in `opening/`: `evidence.rs`, `photo_checks.rs`, `photo_files.rs`, `photo_places.rs`, `open/image_points.rs`, `pixels/`; `opening/health/` says under which word of the strip it counts (`item.rs`) and what mends it (`remedy.rs`) |
 //! | a shader primitive | `src/render/primitives/mod.rs` | a file and a WGSL file of one name; `renderer/` calls it |
 //! | a subcommand with progress | `src/cli/mod.rs` | a variant; its work is a file beside it |
 //! | a JSON key of a photo | `src/exports/scales_json.rs` | a field and its value; the contract |

@@ -14,7 +14,8 @@ use crate::scale::ScalePair;
 use crate::size_distributions::Page;
 use crate::state::bundled::sample_flight;
 use crate::state::history::History;
-use crate::state::{HeldBack, Leaving, Named, Severity, State};
+use crate::state::leaving::{Leaving, Named};
+use crate::state::{HeldBack, Severity, State};
 use crate::tasks::Task;
 
 /// So much of what was copied is shown.
@@ -269,11 +270,11 @@ impl State {
     /// Leaves the flight on the screen, unless something would be lost: then asks first.
     pub(crate) fn leave(&mut self, leaving: Leaving) {
         self.take_notes();
-        let writes = leaving == Leaving::Quit && self.work.is_writing();
+        let writes = matches!(leaving, Leaving::Quit) && self.work.is_writing();
         let is_lost = match &self.open {
             // What was added stays.
             Some(open) if leaving.comes_back() => open.is_changed() && open.is_edited(),
-            _ => self.is_changed(),
+            _ => leaving.ends_flight() && self.is_changed(),
         };
         if is_lost || writes {
             self.held_back = Some(HeldBack::Leave(leaving));
@@ -283,8 +284,11 @@ impl State {
     }
 
     fn go(&mut self, leaving: Leaving) {
-        self.asking = None;
-        self.after_saving = None;
+        // What she has begun while a flight was read goes on.
+        if !matches!(leaving, Leaving::Take(_)) {
+            self.asking = None;
+            self.after_saving = None;
+        }
         // Read again, a flight is looked at as before.
         let is_again = |paths: &[PathBuf]| {
             let open = self.open.as_ref();
@@ -293,7 +297,7 @@ impl State {
         match &leaving {
             Leaving::Read { paths, .. } if is_again(paths) => {}
             Leaving::Read { .. } | Leaving::Sample => self.page = Page::Pile,
-            Leaving::Close | Leaving::Quit => {}
+            Leaving::Take(_) | Leaving::Close | Leaving::Quit => {}
         }
         match leaving {
             Leaving::Read { paths, named } => self.start_opening(paths, named),
@@ -304,8 +308,10 @@ impl State {
                     "the bundled flight is not beside the program; make one with 'fragscale sample DIR'",
                 ),
             },
+            Leaving::Take(arrived) => self.take_arrived(*arrived),
             Leaving::Close => {
                 self.work.cancel(Task::OPEN);
+                self.arrived = None;
                 self.work.cancel_for_flight();
                 if let Some(open) = self.open.take() {
                     open.let_go();
@@ -320,7 +326,7 @@ impl State {
     /// Goes on with what was held back.
     pub(crate) fn go_on(&mut self, held_back: HeldBack) {
         match held_back {
-            HeldBack::Leave(leaving) if self.has_lost_points() && !leaving.comes_back() => {
+            HeldBack::Leave(leaving) if self.has_lost_points() && leaving.ends_flight() => {
                 self.held_back = Some(HeldBack::Points(leaving));
             }
             HeldBack::Leave(Leaving::Quit) | HeldBack::Points(Leaving::Quit)

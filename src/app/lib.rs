@@ -83,7 +83,8 @@ use open_flight::OpenFlight;
 use panels::{Inspector, LastFocus, PhotoPanel, Scrolled};
 use photo_view::Middle;
 use size_distributions::{DistributionCommand, Page, PasteForm, ResultTab};
-use state::{Leaving, Severity};
+use state::Severity;
+use state::leaving::Leaving;
 use viewport::Viewport;
 
 /// Under which name the system knows the program, and keeps its folder.

@@ -28,6 +28,7 @@ impl State {
                 Err(fault) => self.say(Severity::Error, &fault.to_string()),
             }
         }
+        self.look_at_arrived();
         for step in self.work.steps(STEPS_A_FRAME) {
             step(self);
         }

@@ -225,6 +225,9 @@ pub struct Asked {
     pub unit: String,
     /// In the order of [`Step::ALL`], each once.
     pub steps: Vec<AskedStep>,
+    /// What was said of steps that are not asked for now: it waits until they are, and decides nothing.
+    #[serde(skip)]
+    waiting: Vec<AskedStep>,
 }
 
 impl Default for Asked {
@@ -235,9 +238,9 @@ impl Default for Asked {
 }
 
 impl Asked {
-    /// Whether psd is asked for with what the sizes of all flights are held against.
+    /// Whether it is said what the sizes of all flights are held against, also where psd is not asked for now.
     pub fn names_reference(&self) -> bool {
-        let mut steps = self.steps.iter();
+        let mut steps = self.steps.iter().chain(&self.waiting);
         steps.any(|asked| asked.step == Step::Psd && asked.options.contains_key("reference"))
     }
 
@@ -249,6 +252,7 @@ impl Asked {
         let mut asked = Self {
             unit: "cm".to_owned(),
             steps: Vec::new(),
+            waiting: Vec::new(),
         };
         asked.set_steps(steps);
         asked
@@ -259,19 +263,22 @@ impl Asked {
         self.steps.iter().any(|asked| asked.step == step)
     }
 
-    /// These steps; what was said of those that stay is kept.
+    /// These steps, with what was said of them, perhaps before they were asked for; what was said of others waits.
     pub fn set_steps(&mut self, steps: &[Step]) {
-        let old = std::mem::take(&mut self.steps);
+        let mut said = std::mem::take(&mut self.steps);
+        said.append(&mut self.waiting);
         let all = Step::ALL.into_iter().filter(|step| steps.contains(step));
         self.steps = all
             .map(|step| {
-                let before = old.iter().find(|asked| asked.step == step).cloned();
+                let before = said.iter().find(|asked| asked.step == step).cloned();
                 before.unwrap_or(AskedStep {
                     step,
                     options: BTreeMap::new(),
                 })
             })
             .collect();
+        said.retain(|asked| !asked.options.is_empty() && !steps.contains(&asked.step));
+        self.waiting = said;
     }
 
     /// The unit of all lengths that are written.
@@ -402,6 +409,11 @@ mod tests {
         asked
             .set(Step::Delineate, "engine", value("classical"))
             .unwrap();
+        asked.set_steps(&[Step::Delineate, Step::Export]);
+        assert_eq!(asked.steps[1].options["engine"], value("classical"));
+        // A step that is left out for a while says the same when it is back.
+        asked.set_steps(&[Step::Export]);
+        assert!(!asked.has(Step::Delineate));
         asked.set_steps(&[Step::Delineate, Step::Export]);
         assert_eq!(asked.steps[1].options["engine"], value("classical"));
         for (step, key, text, why) in [

@@ -4,6 +4,7 @@
 //! distribution    points (size, percent passing) as a sieve or Split-Desktop gave them
 //! distribution_set  many of them, each with its method, trial and photo, in one unit
 //! sieve_series    the openings of ASTM E11, ISO 565 R20/3, EN 933-2
+//! resampling      what a distribution reads at them, or at any other sizes
 //! joining         the curves of several files in one unit
 //! merging         photos to one distribution, weighted as chosen
 //! functions       that are fitted: Swebrec and its extension, Rosin-Rammler, Gates-Gaudin-Schuhmann
@@ -35,6 +36,7 @@ mod repeats;
 #[cfg(test)]
 #[allow(clippy::expect_used, reason = "in a test a panic is the report")]
 mod repeats_tests;
+mod resampling;
 mod sieve_series;
 
 use fragscale_core::{fault, jobs, units};
@@ -58,4 +60,5 @@ pub use functions::{
 };
 pub use merging::{Merged, Weighting, merge};
 pub use reference_names::{names_sieve, names_sieving};
-pub use sieve_series::{Resampled, Sieve, SieveSeries, resample};
+pub use resampling::{Resampled, resample};
+pub use sieve_series::{Sieve, SieveSeries};

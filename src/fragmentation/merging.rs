@@ -8,7 +8,7 @@
 //! masses, the distribution of all the material together; with areas, the same where each photo's mass
 //! grows with the area that it shows.
 
-use super::sieve_series::keep_nearest_certain;
+use super::resampling::keep_nearest_certain;
 use super::{DistributionSet, LabelledDistribution, Labels, SizeDistribution};
 use crate::fault::Fault;
 

@@ -1,5 +1,5 @@
 //! Well-known text (WKT) as a tree: versions 1 (OGC 01-009, with ESRI's and GDAL's habits) and 2
-//! (ISO 19162), brackets square or round. What the words mean is told in `definition.rs`.
+//! (ISO 19162), brackets square or round. What the words mean is told in `definition/of_wkt.rs`.
 
 use crate::fault::Fault;
 

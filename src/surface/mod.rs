@@ -5,10 +5,10 @@
 //! builds no more than the rays ask for, `mesh` for faces, which may overhang.
 
 mod around;
-mod blocks;
-mod bulk;
+mod caster;
 mod cloud;
 mod delaunay;
+mod error;
 mod from_above;
 mod hull;
 mod left_out;
@@ -22,17 +22,17 @@ mod thinning;
 mod tiles;
 mod triangle_blocks;
 mod up_axis;
+mod vertices;
 mod walk;
 mod welded;
 
-use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use glam::DVec3;
 
-pub use blocks::VertexBlock;
-pub use bulk::bulk_of;
+pub use caster::{Caster, Hit};
 pub use cloud::Cloud;
+pub use error::SurfaceError;
 pub use from_above::{Face, Light, MapRaster, hillshade};
 pub use hull::convex_hull;
 pub use left_out::LeftOut;
@@ -41,57 +41,13 @@ pub use part::{CloudFacts, HullOfMany, PartPlan};
 pub use patches::{Patch, Patches};
 pub use sites::Wanted;
 pub use up_axis::{UpAxis, doubtful_up};
+pub use vertices::{VertexBlock, bulk_of};
 
-use crate::geometry::{Bounds, LocalFrame, Ray};
+use crate::geometry::{Bounds, LocalFrame};
 use mesh::Mesh;
 use patches::Run;
 use sites::{Sites, sample_stride};
 use tiles::Tiles;
-use walk::Walk;
-
-/// Points that make no surface.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum SurfaceError {
-    /// Fewer than three different places.
-    #[error("the cloud has {0} points with different (x, y); a surface needs at least 3")]
-    TooFewPoints(usize),
-    /// More points than can be counted here.
-    #[error("the cloud has {0} points; thin it to under 4 294 967 296")]
-    TooManyPoints(usize),
-    /// No triangle has an area over (x, y).
-    #[error("all points of the cloud lie on one line in (x, y)")]
-    OnOneLine,
-    /// A face list without a single triangle.
-    #[error("none of the faces has three different corners")]
-    NoTriangles,
-    /// A face names a point that is not there.
-    #[error("face {face} names point {point}, but there are only {count} points (counted from 0)")]
-    NoSuchPoint {
-        /// Which triangle, from 0.
-        face: usize,
-        /// The index it names.
-        point: u32,
-        /// How many points there are.
-        count: usize,
-    },
-    /// NaN or infinity.
-    #[error("point {0} (counted from 0) has a coordinate that is not a finite number")]
-    NotFinite(usize),
-    /// Beyond the reach of exact predicates.
-    #[error("a coordinate is larger than 1e60")]
-    TooFarOut,
-    /// Something needs all triangles of a cloud of which only a part is in memory.
-    #[error("only a part of the cloud is in memory, and this needs all of it")]
-    OnlyAPart,
-    /// A length of [`SurfaceOptions`] that is none.
-    #[error("{name} is {value}; it must be a positive length")]
-    Option {
-        /// As flight.toml calls it.
-        name: &'static str,
-        /// What it is.
-        value: f64,
-    },
-}
 
 /// What is left out of a surface. By default nothing is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -122,10 +78,6 @@ impl SurfaceOptions {
         Ok(())
     }
 }
-
-/// How many points of a cloud can be triangulated and sorted into a hierarchy in the time that a ray
-/// takes that walks on what is not built (measured: 100 µs against 3 µs a point).
-const SITES_PER_RAY: usize = 30;
 
 /// A surface that rays can be cast at. Clones share everything.
 #[derive(Debug, Clone)]
@@ -189,22 +141,6 @@ fn magnitude_of(bounds: &Bounds) -> Result<f64, SurfaceError> {
 enum Shape {
     Cloud(Sites),
     Mesh(Mesh),
-}
-
-/// Where a ray meets a surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hit {
-    /// Along the ray, > 0.
-    pub t: f64,
-    /// In the world.
-    pub point: DVec3,
-    /// The longest edge of the triangle that was met, world units: far longer than the distance of
-    /// the points means that the cloud has a hole there. On an edge or a vertex, that of one of the
-    /// triangles there.
-    pub longest_edge: f64,
-    /// Whether the triangle of a mesh was met from the side from which its corners go round clockwise: it looks away. Never of
-    /// a cloud.
-    pub is_from_behind: bool,
 }
 
 /// What a caster of either kind returns, in the local frame.
@@ -347,48 +283,9 @@ impl Surface {
         self.max_edge.is_finite().then_some(self.max_edge)
     }
 
-    /// Makes ready for rays: dozens to thousands on a cloud, any number on a mesh.
-    ///
-    /// # Errors
-    /// Where the triangulation cannot be begun.
-    pub fn caster(&self) -> Result<Caster<'_>, SurfaceError> {
-        let way = match &self.whole.shape {
-            Shape::Cloud(sites) => Way::Walk(Walk::new(sites, self.max_edge)?),
-            Shape::Mesh(mesh) => Way::Mesh(mesh),
-        };
-        Ok(Caster { surface: self, way })
-    }
-
     /// Whether its triangles were put between points here, and not read.
     pub fn is_cloud(&self) -> bool {
         matches!(self.whole.shape, Shape::Cloud(_))
-    }
-
-    /// Whether so many rays are worth a mesh of the whole surface.
-    fn pays_whole(&self, rays: usize) -> bool {
-        match &self.whole.shape {
-            // It may be there already, for the viewport or for others' rays.
-            Shape::Cloud(sites) => {
-                let is_few = || sites.points().len() <= rays.saturating_mul(SITES_PER_RAY);
-                !sites.is_part() && (self.whole.mesh.get().is_some() || is_few())
-            }
-            Shape::Mesh(_) => true,
-        }
-    }
-
-    /// Makes ready for about this many rays. Where they are so many that it pays, a cloud is
-    /// triangulated whole, which the next caster for many finds done.
-    ///
-    /// # Errors
-    /// Where the triangulation fails.
-    pub fn caster_for(&self, rays: usize) -> Result<Caster<'_>, SurfaceError> {
-        if !self.pays_whole(rays) {
-            return self.caster();
-        }
-        let mesh = self.mesh()?;
-        mesh.expect_rays(rays);
-        let way = Way::Mesh(mesh);
-        Ok(Caster { surface: self, way })
     }
 
     /// The same surface as a mesh with all its triangles: for display, and for many rays. Triangulates
@@ -459,142 +356,12 @@ impl Surface {
         Ok(triangles)
     }
 
-    /// The vertices in the world: of a cloud one for each (x, y), of a mesh all of the file. Those
-    /// that only long triangles use are among them.
-    pub fn vertices(&self) -> impl ExactSizeIterator<Item = DVec3> {
-        self.want_all("a look at all of its points");
-        self.vertices_here()
-    }
-
-    /// The same of what is in memory.
-    fn vertices_here(&self) -> impl ExactSizeIterator<Item = DVec3> {
-        let frame = &self.whole.frame;
-        self.points().iter().map(|&p| frame.world_from_local(p))
-    }
-
-    /// Says that all of a cloud is needed of which a part is in memory, and for what.
-    fn want_all(&self, why: &'static str) {
-        if let Shape::Cloud(sites) = &self.whole.shape {
-            sites.want_all(why);
-        }
-    }
-
-    /// Some of [`Self::vertices`], by their indices; none where there are no such indices.
-    pub fn vertices_in(&self, range: Range<usize>) -> impl Iterator<Item = DVec3> {
-        let frame = &self.whole.frame;
-        let points = self.points().get(range).unwrap_or_default();
-        points.iter().map(|&p| frame.world_from_local(p))
-    }
-
-    /// All vertices in blocks of neighbours. The first call makes them.
-    fn vertex_blocks(&self) -> &[VertexBlock] {
-        let blocks = &self.whole.blocks;
-        blocks.get_or_init(|| blocks::blocks(self.vertices_here()))
-    }
-
-    /// The vertices that lie in boxes (world) which `misses` does not miss: boxes only shrink the answer. Their
-    /// order says nothing. The first call makes the blocks.
-    pub fn vertices_seen(&self, misses: impl Fn(&Bounds) -> bool) -> impl Iterator<Item = DVec3> {
-        if let Shape::Cloud(sites) = &self.whole.shape
-            && sites.is_part()
-        {
-            part::want_seen(sites, &self.whole.frame, &misses);
-        }
-        let blocks = self.vertex_blocks().iter();
-        let seen = blocks.filter(move |block| !misses(&block.bounds));
-        seen.flat_map(|block| self.vertices_in(block.range.clone()))
-    }
-
-    /// The heights (world) below and above which the lowest and the highest hundredth of it lie, by a sample of some
-    /// thousand points from all over it: beyond them is most often noise. `None` without points.
-    pub fn usual_heights(&self) -> Option<[f64; 2]> {
-        let mut heights = self.whole.heights.clone();
-        heights.sort_by(f64::total_cmp);
-        let hundredth = heights.len() / 100;
-        let high = heights.len().checked_sub(hundredth + 1)?;
-        Some([*heights.get(hundredth)?, *heights.get(high)?])
-    }
-
-    /// The box around all points of it, in the world.
-    pub fn bounds(&self) -> Bounds {
-        if let Shape::Cloud(sites) = &self.whole.shape {
-            let (frame, bounds) = (&self.whole.frame, sites.bounds());
-            return Bounds {
-                min: frame.world_from_local(bounds.min),
-                max: frame.world_from_local(bounds.max),
-            };
-        }
-        // A surface has vertices, so the box that nothing is in does not stay.
-        let nothing = Bounds {
-            min: DVec3::INFINITY,
-            max: DVec3::NEG_INFINITY,
-        };
-        let blocks = self.vertex_blocks().iter();
-        blocks.fold(nothing, |all, block| Bounds {
-            min: all.min.min(block.bounds.min),
-            max: all.max.max(block.bounds.max),
-        })
-    }
-
-    /// The box around its bulk: [`Self::bounds`] without the few vertices far away that sparse clouds
-    /// have. Without such it is [`Self::bounds`].
-    pub fn bulk_bounds(&self) -> Bounds {
-        self.want_all("finding out where its bulk lies");
-        bulk::bulk(self.vertices_here(), self.bounds())
-    }
-
-    /// The colour of each vertex (red, green, blue), in the order of [`Self::vertices`]; empty where
-    /// the file has none.
-    pub fn colors(&self) -> &[[u8; 3]] {
-        match &self.whole.shape {
-            Shape::Cloud(sites) => sites.colors(),
-            Shape::Mesh(mesh) => mesh.colors(),
-        }
-    }
-
     /// In the local frame.
     fn points(&self) -> &[DVec3] {
         match &self.whole.shape {
             Shape::Cloud(sites) => sites.points(),
             Shape::Mesh(mesh) => mesh.points(),
         }
-    }
-}
-
-/// Casts rays at a surface. One for each thread.
-#[derive(Debug)]
-pub struct Caster<'a> {
-    surface: &'a Surface,
-    way: Way<'a>,
-}
-
-#[derive(Debug)]
-enum Way<'a> {
-    Walk(Walk<'a>),
-    Mesh(&'a Mesh),
-}
-
-impl<'a> Caster<'a> {
-    /// The surface that it casts at.
-    pub fn surface(&self) -> &'a Surface {
-        self.surface
-    }
-
-    /// The nearest intersection in front of the ray's origin. Edges, vertices and the rim belong to
-    /// the surface.
-    pub fn cast(&mut self, ray: &Ray) -> Option<Hit> {
-        let local = self.surface.frame().local_from_world_ray(ray);
-        let slack = self.surface.slack(ray.origin);
-        let met = match &mut self.way {
-            Way::Walk(walk) => walk.cast(&local, slack),
-            Way::Mesh(mesh) => mesh.cast(&local, slack, self.surface.max_edge),
-        }?;
-        Some(Hit {
-            t: met.t,
-            point: ray.at(met.t),
-            longest_edge: met.longest_edge,
-            is_from_behind: met.is_from_behind,
-        })
     }
 }
 

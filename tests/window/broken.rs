@@ -93,7 +93,6 @@ fn a_failed_opening_leaves_no_half_computed_flight() {
     settings.image = fragscale::scale::ImageKind::AsShot;
     app.apply(Command::Set(settings));
     app.apply(Command::Open(flight("tests/no such flight")));
-    app.apply(Command::Discard);
     desk.settle();
     let open = desk.open();
     assert_eq!(open.flight().parts().image, open.settings().image);

@@ -131,6 +131,55 @@ fn the_wheel_zooms_at_the_cursor_a_drag_moves_and_fit_shows_all() {
     assert_eq!(desk.open().map.looking.at, None);
 }
 
+/// Who zooms out sees all photos at once: of the part before they would be cut at its edges until the next one is drawn.
+#[test]
+fn photos_are_whole_while_the_next_part_is_drawn() {
+    let mut desk = on_map();
+    let frame = place(&desk);
+    let size = DVec2::new(f64::from(frame.width()), f64::from(frame.height()));
+    let zoom = |desk: &mut Desk, factor: f64| {
+        desk.harness
+            .state_mut()
+            .apply(Command::Map(MapCommand::Zoom {
+                cursor: size / 2.0,
+                factor,
+                size,
+            }));
+    };
+    let shown = |desk: &Desk| {
+        let map = &desk.open().map;
+        let plan = &map.made.as_ref().expect("a plan").plan;
+        let (middle, scale) = map.looking.seen(plan, size);
+        let half = size / 2.0 / scale;
+        let sight = [middle - half, middle + half];
+        let shown = map.shown(plan, sight).expect("a part").frame.bounds();
+        let drawn = map.drawn.as_ref().expect("a part").frame.bounds();
+        let [min, max] = plan.extent;
+        let is_whole = shown[0].cmple(min).all() && shown[1].cmpge(max).all();
+        (is_whole, shown == drawn)
+    };
+    zoom(&mut desk, 20.0);
+    desk.settle();
+    // Near by, the fine one.
+    assert_eq!(shown(&desk), (false, true));
+    for _ in 0..10 {
+        zoom(&mut desk, 0.7);
+    }
+    // Nothing was drawn since.
+    assert_eq!(shown(&desk), (true, false));
+    desk.settle();
+    assert_eq!(shown(&desk), (true, true));
+    // What was drawn before a decision is of before.
+    zoom(&mut desk, 20.0);
+    desk.harness.state_mut().apply(Command::Decide(
+        0,
+        Some((fragscale::flight::DecisionKind::LeftOut, String::new())),
+    ));
+    desk.settle();
+    zoom(&mut desk, 0.05);
+    assert_eq!(shown(&desk), (false, true));
+}
+
 /// A decision changes the verdict on the map; another ground is made only for another surface.
 #[test]
 fn the_map_follows_the_review() {

@@ -6,10 +6,11 @@ use std::process::Command as Program;
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Pos2, vec2};
+use egui_kittest::Harness;
 use egui_kittest::kittest::NodeT;
-use fragscale::app::Command;
 use fragscale::app::planning::PlanStep;
 use fragscale::app::size_distributions::Page;
+use fragscale::app::{App, Command};
 use fragscale::formats::read_mission;
 use fragscale::plan::Size;
 use glam::DVec2;
@@ -311,6 +312,31 @@ fn photos_are_changed_by_hand() {
     assert_eq!(count(&desk), before + 1);
     desk.click(Role::Button, "As planned");
     assert_eq!(count(&desk), before);
+}
+
+/// Why nothing is planned stands above the fields, which are higher than a small window.
+#[test]
+fn why_nothing_is_planned_is_seen_in_a_small_window() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = pile(folder.path());
+    let harness = Harness::builder()
+        .with_size([800.0, 600.0])
+        .with_max_steps(30)
+        .build_eframe(|context| App::new(context, vec![path]));
+    let mut desk = Desk { harness };
+    desk.settle();
+    desk.press(Modifiers::COMMAND, Key::Num3);
+    let mut asked = desk.open().planning.now().expect("a wish").clone();
+    asked.clearance = 200.0;
+    let ask = Command::Plan(PlanStep::Ask(Box::new(asked)));
+    desk.harness.state_mut().apply(ask);
+    desk.settle();
+    let why = desk.open().planning.refused().expect("a reason").to_owned();
+    let written = desk.written();
+    let why = written.iter().find(|written| written.text == why);
+    let why = why.expect("it is drawn");
+    assert!(why.seen_in.expand(1.0).contains_rect(why.place));
+    assert!(desk.shows(Role::Button, "Plan again"));
 }
 
 /// A keep-out over a part of the pile, and fields that are wrong or cannot be.

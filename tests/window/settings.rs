@@ -277,6 +277,47 @@ fn another_flight_waits_for_the_answer() {
         desk.open().flight().parts().name,
         "Fixture tiltpan-xyz-feet-misses"
     );
+    assert!(desk.says("Windrow was read, to be shown in its place"));
     desk.click(Role::Button, "Discard changes");
     assert_eq!(desk.open().flight().parts().name, "Windrow");
+}
+
+/// Nobody discards changes for a file that turns out to be none: she is asked once the other flight is there.
+#[test]
+fn a_file_that_cannot_be_opened_costs_no_changes() {
+    let (folder, mut desk) = page(MISSES);
+    desk.fill("Ground elevation", "0.5");
+    let changed = desk.open().settings();
+    let open = |desk: &mut Desk, path: &Path| {
+        let open = fragscale::app::Command::Open(path.to_owned());
+        desk.harness.state_mut().apply(open);
+        desk.settle();
+    };
+    open(&mut desk, &folder.path().join("no such flight"));
+    assert!(desk.harness.state().state().held_back.is_none());
+    assert!(desk.logged("no such flight"));
+    assert!(desk.open().is_changed());
+    assert_eq!(desk.open().settings(), changed);
+    // Who stays is not led to the other flight by what she does next.
+    open(&mut desk, &flight(WINDROW));
+    desk.click(Role::Button, "Stay here");
+    desk.press(Modifiers::COMMAND, Key::S);
+    assert!(!desk.open().is_changed());
+    assert_eq!(desk.open().settings(), changed);
+}
+
+/// The same flight by another way, with changes that are saved first: what is shown is what was saved.
+#[test]
+fn a_flight_that_was_saved_since_is_read_again() {
+    let (folder, mut desk) = page(MISSES);
+    desk.fill("Ground elevation", "0.5");
+    let changed = desk.open().settings();
+    let number = desk.open().number;
+    let again = fragscale::app::Command::Open(folder.path().to_owned());
+    desk.harness.state_mut().apply(again);
+    desk.settle();
+    desk.click(Role::Button, "Save them");
+    assert_ne!(desk.open().number, number, "it was opened");
+    assert_eq!(desk.open().settings().ground, changed.ground);
+    assert!(!desk.open().is_changed());
 }

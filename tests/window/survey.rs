@@ -3,9 +3,10 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
+use fragscale::app::command::ViewChange;
 use fragscale::app::open_flight::survey::{BaseChoice, SurveyStep, SurveyTool};
 use fragscale::app::{App, Command};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::desk::{Desk, flight};
 use crate::viewport::{on_screen, on_windrow};
@@ -122,6 +123,65 @@ fn a_finished_profile_does_not_lie_under_its_plot() {
     assert!(aside < 60.0, "{window} {place}");
     for end in ends {
         let at = on_screen(&desk, &desk.open().looking.orbit.view(), end);
+        assert!(!window.contains(at), "{at} in {window}");
+    }
+}
+
+/// Nothing is clicked yet: what is to be clicked is in sight, wherever on the screen it lies.
+#[test]
+fn a_tool_that_is_taken_does_not_lie_over_the_surface() {
+    let mut desk = Desk::new(Some(&flight("tests/windrow")));
+    desk.press(Modifiers::NONE, Key::F2);
+    desk.press(Modifiers::NONE, Key::T);
+    let place = desk.viewport();
+    // To the left and down.
+    let size = DVec2::new(f64::from(place.width()), f64::from(place.height()));
+    let pan = ViewChange::Pan(DVec2::new(-350.0, 200.0), size);
+    desk.harness.state_mut().apply(Command::View(pan));
+    desk.settle();
+    let view = desk.open().looking.orbit.view();
+    let surface = desk.open().flight().parts().surface.clone();
+    let vertices = surface.vertices().step_by(surface.vertices().len() / 300);
+    let seen: Vec<_> = vertices
+        .map(|vertex| on_screen(&desk, &view, vertex))
+        .collect();
+    assert!(seen.iter().any(|at| at.x < place.left() + 100.0));
+    for (button, title) in [
+        ("Profile along a line", "Profile"),
+        ("Volume inside a polygon", "Volume"),
+    ] {
+        desk.click(Role::Button, button);
+        let window = desk.node(Role::Window, title).rect();
+        assert!(place.expand(0.5).contains_rect(window), "{window} {place}");
+        let covered = seen.iter().filter(|at| window.contains(**at)).count();
+        assert_eq!(covered, 0, "{title} at {window} in {place}");
+    }
+}
+
+/// The numbers of a volume lie beside its polygon.
+#[test]
+fn a_finished_volume_does_not_lie_under_its_numbers() {
+    let mut desk = Desk::new(Some(&flight("tests/windrow")));
+    desk.press(Modifiers::NONE, Key::F2);
+    desk.press(Modifiers::NONE, Key::T);
+    // To where the window of a tool begins otherwise.
+    let place = desk.viewport();
+    let size = DVec2::new(f64::from(place.width()), f64::from(place.height()));
+    let pan = ViewChange::Pan(DVec2::new(-200.0, 150.0), size);
+    desk.harness.state_mut().apply(Command::View(pan));
+    desk.settle();
+    desk.click(Role::Button, "Volume inside a polygon");
+    let corners = [(-0.2, -0.1), (0.1, -0.1), (0.1, 0.2), (-0.2, 0.2)];
+    let corners = corners.map(|(x, y)| on_windrow(x, y));
+    for corner in corners {
+        click(&mut desk, corner);
+    }
+    desk.press(Modifiers::NONE, Key::Enter);
+    assert!(desk.says("Fill (above)"));
+    let window = desk.node(Role::Window, "Volume").rect();
+    let view = desk.open().looking.orbit.view();
+    for corner in corners {
+        let at = on_screen(&desk, &view, corner);
         assert!(!window.contains(at), "{at} in {window}");
     }
 }

@@ -5,7 +5,8 @@ use std::time::Instant;
 use super::KeptStep;
 use crate::files;
 use crate::open_flight::OpenFlight;
-use crate::state::{Leaving, Named, State};
+use crate::state::State;
+use crate::state::leaving::{Leaving, Named};
 
 impl State {
     pub(crate) fn kept_step(&mut self, step: KeptStep) {

@@ -81,7 +81,7 @@ impl State {
         };
         self.start_wished(Task::MAP_PART, part, work, |state, drawn| {
             if let Some(open) = &mut state.open {
-                open.map.drawn = Some(drawn);
+                open.map.take_drawn(drawn);
             }
         });
     }

@@ -44,6 +44,8 @@ pub struct FlightMap {
     pub looking: MapLooking,
     /// What of it was drawn last.
     pub drawn: Option<DrawnPart>,
+    /// What was drawn last with all of it in it.
+    pub whole: Option<DrawnPart>,
 }
 
 /// A plan with what the window needs of it.
@@ -73,6 +75,27 @@ impl FlightMap {
         let made = self.made.as_ref()?;
         let is_of_now = made.revision == self.revision && made.plan.ground_kind == self.ground;
         is_of_now.then_some(made)
+    }
+
+    /// Takes a part that was drawn.
+    fn take_drawn(&mut self, drawn: DrawnPart) {
+        let is_whole = |made: &MadePlan| drawn.holds(made.plan.extent);
+        if self.made.as_ref().is_some_and(is_whole) {
+            self.whole = Some(drawn.clone());
+        }
+        self.drawn = Some(drawn);
+    }
+
+    /// What is shown of photos where this part of the map (least and greatest x and y) is in sight: what was drawn last, or all of
+    /// the map, coarser, until the part is drawn that was zoomed or moved to. Else photos would end at the edge of the part before.
+    pub fn shown(&self, plan: &Plan, [min, max]: [DVec2; 2]) -> Option<&DrawnPart> {
+        let last = self.drawn.as_ref()?;
+        let [least, greatest] = plan.extent;
+        let whole = self.whole.as_ref().filter(|whole| whole.is_as(last));
+        match last.holds([min.max(least), max.min(greatest)]) {
+            true => Some(last),
+            false => whole.or(Some(last)),
+        }
     }
 }
 

@@ -30,6 +30,7 @@ pub struct PartInSight {
 }
 
 /// What was drawn.
+#[derive(Clone)]
 pub struct DrawnPart {
     /// What was asked for.
     pub part: PartInSight,
@@ -40,6 +41,20 @@ pub struct DrawnPart {
     /// The ground and what of the map it covers (least and greatest x and y), where that of the whole plan is
     /// too coarse.
     pub ground: Option<(egui::TextureHandle, [DVec2; 2])>,
+}
+
+impl DrawnPart {
+    /// Whether all of this part of the map (least and greatest x and y) is on it.
+    pub(super) fn holds(&self, [min, max]: [DVec2; 2]) -> bool {
+        let [least, greatest] = self.frame.bounds();
+        min.cmpge(least).all() && max.cmple(greatest).all()
+    }
+
+    /// Whether it shows the same plan in the same colours.
+    pub(super) fn is_as(&self, other: &Self) -> bool {
+        let [own, other] = [self, other].map(|drawn| (drawn.part.revision, drawn.part.dark));
+        own == other
+    }
 }
 
 impl PartInSight {

@@ -4,6 +4,7 @@
 pub mod bundled;
 pub mod history;
 pub mod layers;
+pub mod leaving;
 pub mod preferences;
 mod view;
 
@@ -24,6 +25,7 @@ use crate::render::Gpu;
 use crate::season::SeasonList;
 use crate::size_distributions::{Page, SizeDistributions};
 use crate::tasks::work::{Task, Work};
+use leaving::{Arrived, Leaving};
 use preferences::{Preferences, Theme};
 
 /// How many lines the log keeps.
@@ -50,7 +52,7 @@ pub struct LogLine {
 }
 
 /// What is held back until the engineer says that something may be lost.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub enum HeldBack {
     /// Leaving the flight on the screen.
     Leave(Leaving),
@@ -65,50 +67,6 @@ pub enum HeldBack {
         /// What is there, in a sentence.
         there: String,
     },
-}
-
-/// How something was named that is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Named {
-    /// To be opened; a surface alone is for the flight that could not be opened last, or that is on the screen.
-    ToOpen,
-    /// As the surface or the photos of the flight on the screen.
-    Added,
-    /// A cloud, to be looked at by itself.
-    Alone,
-    /// The flight on the screen once more, with the surface and the photos that were added to it.
-    Again,
-}
-
-/// What the flight on the screen is left for.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Leaving {
-    /// A flight that is read from here.
-    Read {
-        /// What was named.
-        paths: Vec<PathBuf>,
-        /// How.
-        named: Named,
-    },
-    /// The bundled flight.
-    Sample,
-    /// The start page.
-    Close,
-    /// Leaving the program.
-    Quit,
-}
-
-impl Leaving {
-    /// Whether the same flight comes back, with what is shown and measured of it.
-    pub(crate) fn comes_back(&self) -> bool {
-        matches!(
-            self,
-            Self::Read {
-                named: Named::Again,
-                ..
-            }
-        )
-    }
 }
 
 /// The page, and the photo that is selected.
@@ -172,6 +130,8 @@ pub struct State {
     pub cloud: Option<PathBuf>,
     /// Whether the flight that is being read is another one than that on the screen.
     pub reads_other: bool,
+    /// A flight that was read, until no other question waits.
+    pub arrived: Option<Box<Arrived>>,
     /// The settings that the panels of this frame were drawn with, while their commands are applied.
     pub(crate) settings_of_frame: Option<FlightSettings>,
     /// A first look at the surface that is being read.
@@ -214,6 +174,7 @@ impl State {
             choices: Vec::new(),
             cloud: None,
             reads_other: false,
+            arrived: None,
             settings_of_frame: None,
             preview: None,
             opened: 0,

@@ -13,7 +13,8 @@ use crate::open_flight::picker::Picker;
 use crate::open_flight::survey::surveyor::Surveyor;
 use crate::opening::SurfaceSample;
 use crate::opening_preview::OpeningPreview;
-use crate::state::{Leaving, Named, Severity, State};
+use crate::state::leaving::{Arrived, Leaving, Named};
+use crate::state::{Severity, State};
 
 impl Task {
     /// Reading a flight.
@@ -36,6 +37,10 @@ impl State {
         let base = self.tried.clone().or(on_screen);
         let base = base.filter(|_| how != Named::Alone);
         let added = how == Named::Added;
+        let beside = self.open.as_ref();
+        let beside = beside.map(|open| (open.files.path.clone(), open.files.saved.clone()));
+        let from = paths.clone();
+        self.arrived = None;
         self.notice = None;
         self.from_photos.offered = None;
         self.reads_other = true;
@@ -57,8 +62,41 @@ impl State {
                 .and_then(|(path, options)| load(path, options, None, Some(&on_sample), progress))
         };
         self.start(Task::OPEN, work, move |state, opened| {
-            state.take_opened(opened, seen);
+            match (opened, seen) {
+                (Ok(loaded), None) => {
+                    state.arrived = Some(Box::new(Arrived {
+                        loaded,
+                        paths: from,
+                        named: how,
+                        beside,
+                    }));
+                }
+                (opened, seen) => state.take_opened(opened, seen),
+            }
         });
+    }
+
+    /// Puts a flight that was read in the place of the one on the screen; asks first where something would be lost. Only now: of
+    /// a file that cannot be opened nobody is asked anything.
+    pub(crate) fn look_at_arrived(&mut self) {
+        // Another question is answered first.
+        if self.held_back.is_some() {
+            return;
+        }
+        if let Some(arrived) = self.arrived.take() {
+            // Reading it has stopped the reading of the one on the screen with other settings.
+            self.take_back_settings();
+            self.leave(Leaving::Take(arrived));
+        }
+    }
+
+    /// Takes a flight that was read; reads it again where it is the one on the screen, which was saved since.
+    pub(crate) fn take_arrived(&mut self, arrived: Arrived) {
+        let open = self.open.as_deref();
+        match open.is_some_and(|open| arrived.is_of_old(open)) {
+            true => self.start_opening(arrived.paths, arrived.named),
+            false => self.take_flight(arrived.loaded, None),
+        }
     }
 
     /// Opens what was named; a cloud alone can be several things to the flight on the screen, so it is asked

@@ -5,7 +5,7 @@
 //! name = "North pit 2026"                  # optional
 //! to = "results"                           # optional: the folder of the results; else --to
 //! unit = "cm"                              # optional: mm, cm (if left out), m, in, ft
-//! steps = ["scales", "check", "delineate"] # optional: these are scales and check if left out
+//! steps = ["scales", "delineate", "psd"]   # optional: these are scales and check if left out
 //!
 //! [delineate]                              # optional: what can be said of a step, as on the command line
 //! engine = "classical"
@@ -215,6 +215,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Season, Fault> {
     asked
         .check()
         .map_err(|what| at("", "steps", what, "correct steps and unit"))?;
+    let reference_waits = reference_waits(path, &asked, &sources);
     let stem = || {
         path.file_stem()
             .unwrap_or_default()
@@ -226,7 +227,29 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Season, Fault> {
         asked,
         to: read.to.as_deref().map(below).map(tidy),
         sources,
+        reference_waits,
     })
+}
+
+/// That a reference is named and no step holds sizes against it, with the steps that would.
+fn reference_waits(path: &Path, asked: &Asked, sources: &[Source]) -> Option<String> {
+    let of = match asked.names_reference() {
+        true => "[psd]",
+        false if sources.iter().any(|source| source.reference.is_some()) => "[[flight]]",
+        false => return None,
+    };
+    if asked.has(Step::Psd) {
+        return None;
+    }
+    let is_asked = |step: &Step| asked.has(*step) || [Step::Delineate, Step::Psd].contains(step);
+    let steps = Step::ALL.into_iter().filter(is_asked).map(Step::as_str);
+    let steps: Vec<&str> = steps.collect();
+    Some(format!(
+        "{}: {of} names a reference, but psd is not among the steps, so no sizes are held against it: write steps = {steps:?}, or \
+         give --steps {}",
+        path.display(),
+        steps.join(",")
+    ))
 }
 
 /// A text or a list of texts.

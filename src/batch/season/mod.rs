@@ -36,6 +36,8 @@ pub struct Season {
     pub to: Option<PathBuf>,
     /// In their order.
     sources: Vec<Source>,
+    /// That its file names a reference and leaves out psd, which would hold sizes against it.
+    reference_waits: Option<String>,
 }
 
 /// Where flights are: one, those below a folder, or those that a pattern matches.
@@ -140,6 +142,7 @@ impl Season {
                     ..Source::default()
                 })
                 .collect(),
+            reference_waits: None,
         })
     }
 
@@ -259,14 +262,16 @@ impl Season {
             }
         }
         found.notes.extend(self.without_reference(&found.flights));
+        let is_left_out = !self.asked.has(Step::Psd);
+        let waits = self.reference_waits.iter().filter(|_| is_left_out);
+        found.notes.extend(waits.cloned());
         naming::refuse_twins(&found.flights)?;
         Ok(found)
     }
 
     /// That psd is passed over, and for whom: nobody says what their sizes are held against.
     fn without_reference(&self, flights: &[SeasonFlight]) -> Option<String> {
-        let mut steps = self.asked.steps.iter();
-        if !steps.any(|asked| asked.step == Step::Psd) || self.asked.names_reference() {
+        if !self.asked.has(Step::Psd) || self.asked.names_reference() {
             return None;
         }
         let without = flights.iter().filter(|flight| flight.reference.is_none());

@@ -27,253 +27,18 @@ mod counted;
 mod drawn;
 mod ends;
 pub mod intervals;
+mod notes;
+mod photo_fragments;
+mod steps;
 pub mod tail;
 
 use fragscale_core::fault::Fault;
-use fragscale_core::scale::ScaleField;
-use fragscale_core::units::LengthUnit;
 use fragscale_fragmentation::SizeDistribution;
-use glam::DVec2;
+
+pub use self::photo_fragments::PhotoFragments;
+pub use self::steps::{LOOSE, Step, Steps, WantedSteps};
 
 use self::counted::Counted;
-use crate::bare::bare;
-use crate::engine::{Habits, LEAST_PIXELS_ACROSS};
-use crate::labels::{FINES, LabelImage, NOT_ROCK};
-use crate::measures::{Fragment, Measures};
-use crate::outlined_by::OutlinedBy;
-
-/// The largest circle within the outline of a ball, over the circle of its area: 0.97 and more in the nine photos of the
-/// bundled flight, while no fragment among the largest 200 has over 0.93.
-const AS_A_BALL: f64 = 0.95;
-/// A ball is to be seen from afar: 1.8 to 2.3 times the next there.
-const ALONE: f64 = 1.3;
-
-/// What a photo contributes. Lengths in one unit.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PhotoFragments {
-    /// All that were outlined.
-    pub fragments: Vec<Fragment>,
-    /// Width and height of the photo, pixels.
-    pub frame: DVec2,
-    /// The area of what is fines, on planes parallel to the image.
-    pub fines: f64,
-    /// The size of the smallest fragment that the photo can show.
-    pub limit: f64,
-    /// How many millimetres one of these lengths is.
-    pub mm: f64,
-}
-
-impl PhotoFragments {
-    /// From a photo's label image, the scale field of all its pixels and the measures of its fragments, both in `unit`; the narrowest
-    /// that its engine outlines is `least_across` pixels. Of what other tools and people outlined (`None`) the limit is the
-    /// smallest that counts and is as wide as the narrowest that an engine outlines, or that width where none is: a speck and a
-    /// line of pixels say nothing of the rest.
-    pub fn new(
-        labels: &LabelImage,
-        field: &ScaleField,
-        fragments: Vec<Fragment>,
-        least_across: Option<f64>,
-        unit: LengthUnit,
-    ) -> Self {
-        let (mut fines, mut area, mut pixels) = (0.0, 0.0, 0.0);
-        for (place, label) in labels.labels.iter().enumerate() {
-            let (column, row) = (place % labels.width, place / labels.width);
-            let Some(scale) = field.scale_at(column as u32, row as u32) else {
-                continue;
-            };
-            let own = 1.0 / (scale * scale);
-            pixels += 1.0;
-            area += own;
-            if *label == FINES {
-                fines += own;
-            }
-        }
-        let scale: f64 = (pixels / area).sqrt();
-        let counts = (fragments.iter()).filter(|of| !of.is_cut && !is_speck(of));
-        let sizes = counts.filter_map(|of| Some(of.world?.sieve_size));
-        let of_others = || {
-            sizes
-                .reduce(f64::min)
-                .unwrap_or(LEAST_PIXELS_ACROSS / scale)
-        };
-        let limit = least_across.map_or_else(of_others, |across| across / scale);
-        Self {
-            frame: DVec2::new(labels.width as f64, labels.height as f64),
-            fines,
-            limit,
-            fragments,
-            mm: unit.in_units_of(LengthUnit::Millimetre),
-        }
-    }
-}
-
-/// Whether a fragment has fewer pixels than the narrowest that an engine outlines, or is not as wide.
-fn is_speck(fragment: &Fragment) -> bool {
-    let width = fragment.world.map(|of| of.widths[0] * of.scale);
-    (fragment.pixels as f64) < std::f64::consts::PI / 4.0 * LEAST_PIXELS_ACROSS.powi(2)
-        || width.is_some_and(|width| width < LEAST_PIXELS_ACROSS)
-}
-
-impl PhotoFragments {
-    /// That there are outlines too small for the limit, where people and other tools made some.
-    fn specks(&self) -> Option<String> {
-        let is_below = |of: &&Fragment| {
-            let size = of.world.filter(|_| !of.is_cut).map(|of| of.sieve_size);
-            is_speck(of) && size.is_some_and(|size| size < self.limit)
-        };
-        let count = self.fragments.iter().filter(is_below).count();
-        let outlines = if count == 1 { "outline" } else { "outlines" };
-        (count > 0).then(|| {
-            format!(
-                "{count} {outlines} of less than {LEAST_PIXELS_ACROSS} pixels across: too small to be measured, and below the limit"
-            )
-        })
-    }
-
-    /// That some lie where nothing can be measured.
-    fn off_surface(&self) -> Option<String> {
-        let is_off = |of: &&Fragment| !of.is_cut && of.world.is_none();
-        let count = self.fragments.iter().filter(is_off).count();
-        let outlines = if count == 1 { "outline" } else { "outlines" };
-        (count > 0).then(|| {
-            format!(
-                "{count} {outlines} of which too little lies on the surface, as over a hole of the cloud: not measured, and counted nowhere"
-            )
-        })
-    }
-
-    /// That the largest one seems to be a ball, which nobody traced as a scale object.
-    fn ball(&self) -> Option<String> {
-        let whole = self.fragments.iter().filter(|of| !of.is_cut);
-        let mut whole: Vec<&Measures> = whole.filter_map(|of| of.world.as_ref()).collect();
-        whole.sort_by(|a, b| b.sieve_size.total_cmp(&a.sieve_size));
-        let [largest, next, ..] = whole[..] else {
-            return None;
-        };
-        let is_ball = largest.inscribed > AS_A_BALL * largest.diameter
-            && largest.sieve_size > ALONE * next.sieve_size;
-        is_ball.then(|| {
-            "its largest fragment is a circle, much larger than the next, and counts as rock; if it is a ball, trace it as a scale \
-             object, or exclude it (window, page Fragments, tool Exclude)"
-                .to_owned()
-        })
-    }
-
-    /// That less of it is outlined than not.
-    fn little(&self, labels: &LabelImage) -> Option<String> {
-        let of =
-            |wanted: fn(u32) -> bool| labels.labels.iter().filter(|label| wanted(**label)).count();
-        let fines = of(|label| label == FINES);
-        let rock = of(|label| label != FINES && label != NOT_ROCK);
-        (rock > 0 && fines > rock).then(|| {
-            format!(
-                "only {:.0} % of it is outlined: where the rest is no fines (grass, floor, other things), its sizes say nothing; \
-                 exclude that, or leave the photo out",
-                100.0 * rock as f64 / (fines + rock) as f64
-            )
-        })
-    }
-
-    /// What is to be said of a photo's outlines, one sentence each. `by_engine`: of an engine's it is no wonder that some are narrower
-    /// than its limit.
-    pub fn notes(&self, labels: &LabelImage, by_engine: bool) -> Vec<String> {
-        let little = self.little(labels);
-        // That is more than a large piece of it.
-        let bare = if little.is_none() { bare(labels) } else { None };
-        let specks = if by_engine { None } else { self.specks() };
-        let notes = [specks, self.off_surface(), self.ball(), bare, little];
-        notes.into_iter().flatten().collect()
-    }
-
-    /// The same without any fragment.
-    pub(crate) fn without_fragments(&self) -> Self {
-        Self {
-            fragments: Vec::new(),
-            ..*self
-        }
-    }
-}
-
-/// Which steps are taken.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Steps {
-    /// Large fragments are cut more often.
-    pub edges: bool,
-    /// How many times too large the engine's sizes are; 1 where they are taken as they are.
-    pub engine: f64,
-    /// The porosity of the pile, between 0 and 1, where small bodies are seen deeper down between large ones; `None` where
-    /// its surface is taken for a cut.
-    pub pores: Option<f64>,
-    /// How much of what nobody outlined is fines, 0 to 1; the rest are fragments that were not found.
-    pub fines: f64,
-}
-
-impl Default for Steps {
-    fn default() -> Self {
-        Self {
-            edges: true,
-            engine: 1.0,
-            pores: None,
-            fines: 1.0,
-        }
-    }
-}
-
-impl Steps {
-    /// The usual ones for what an engine outlined, or other tools and people (`None`). What these leave without an outline is
-    /// fines. An engine does not find small fragments as often as large ones, which makes its sizes too large; without the pores
-    /// they are too small, and the two make up for each other on simulated piles (docs/fragments.md): so the pores are left out there.
-    pub fn of(engine: Option<Habits>) -> Self {
-        Self {
-            edges: true,
-            engine: engine.map_or(1.0, |habits| habits.sizes_off),
-            pores: engine.is_none().then_some(LOOSE),
-            fines: engine.map_or(1.0, |habits| habits.fines_of_unfound),
-        }
-    }
-}
-
-/// The steps that somebody asks for.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WantedSteps {
-    /// These alone; `None` where the usual ones are wanted.
-    pub named: Option<Vec<Step>>,
-    /// The porosity of the pile, where the pores are among them.
-    pub porosity: f64,
-}
-
-impl Default for WantedSteps {
-    fn default() -> Self {
-        Self {
-            named: None,
-            porosity: LOOSE,
-        }
-    }
-}
-
-impl WantedSteps {
-    /// Those for a photo that was outlined by this.
-    pub fn of(&self, outlined: OutlinedBy<'_>) -> Steps {
-        let usual = Steps::of(outlined.habits());
-        let Some(named) = &self.named else {
-            return Steps {
-                pores: usual.pores.map(|_| self.porosity),
-                ..usual
-            };
-        };
-        let all = Steps {
-            pores: Some(self.porosity),
-            ..usual
-        };
-        named
-            .iter()
-            .fold(Steps::NONE, |steps, step| steps.with(*step, &all))
-    }
-}
-
-/// The porosity of coarse crushed rock that was dumped and not compacted: 0.40 to 0.50 (void content of loose coarse aggregate,
-/// ASTM C29; Kosmatka and Wilson, "Design and Control of Concrete Mixtures", 2011, chapter 6).
-pub const LOOSE: f64 = 0.45;
 
 /// A size distribution by mass, and what it rests on.
 #[derive(Debug, Clone, PartialEq)]
@@ -328,82 +93,6 @@ pub struct StepTaken {
     pub curve: SizeDistribution,
 }
 
-/// The steps that can be left out, in their order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Step {
-    /// Fragments by the area that is seen of them: where the way begins.
-    Seen,
-    /// [`Steps::edges`].
-    Edges,
-    /// [`Steps::engine`].
-    Engine,
-    /// [`Steps::pores`].
-    Pores,
-    /// [`Steps::fines`].
-    Fines,
-}
-
-impl Steps {
-    /// None of them.
-    const NONE: Self = Self {
-        edges: false,
-        engine: 1.0,
-        pores: None,
-        fines: 0.0,
-    };
-
-    /// Which they are, in their order: "edges, pores and fines".
-    pub fn in_words(&self) -> String {
-        let all = [
-            (Step::Edges, "edges"),
-            (Step::Engine, "engine"),
-            (Step::Pores, "pores"),
-            (Step::Fines, "fines"),
-        ];
-        let taken = all.into_iter().filter(|(step, _)| self.takes(*step));
-        let names: Vec<&str> = taken.map(|(_, name)| name).collect();
-        match names.split_last() {
-            None => "none".to_owned(),
-            Some((only, [])) => (*only).to_owned(),
-            Some((last, others)) => format!("{} and {last}", others.join(", ")),
-        }
-    }
-
-    /// Whether a step is among them.
-    fn takes(&self, step: Step) -> bool {
-        match step {
-            Step::Seen => true,
-            Step::Edges => self.edges,
-            Step::Engine => self.engine != 1.0,
-            Step::Pores => self.pores.is_some(),
-            Step::Fines => self.fines > 0.0,
-        }
-    }
-
-    /// The same with a step as `other` takes it.
-    fn with(self, step: Step, other: &Self) -> Self {
-        match step {
-            Step::Seen => self,
-            Step::Edges => Self {
-                edges: other.edges,
-                ..self
-            },
-            Step::Engine => Self {
-                engine: other.engine,
-                ..self
-            },
-            Step::Pores => Self {
-                pores: other.pores,
-                ..self
-            },
-            Step::Fines => Self {
-                fines: other.fines,
-                ..self
-            },
-        }
-    }
-}
-
 /// What each of the steps does that are taken for any of the photos.
 ///
 /// # Errors
@@ -448,9 +137,10 @@ pub fn steps_taken(photos: &[(&PhotoFragments, Steps)]) -> Result<Vec<StepTaken>
 #[cfg(test)]
 pub(crate) mod tests {
     use fragscale_core::split_mix::SplitMix;
-    use glam::DVec3;
+    use glam::{DVec2, DVec3};
 
     use super::*;
+    use crate::measures::{Fragment, Measures};
 
     pub(crate) fn fragment(size: f64, extent: f64, is_cut: bool) -> Fragment {
         let area = std::f64::consts::PI / 4.0 * size * size;
@@ -475,50 +165,6 @@ pub(crate) mod tests {
                 sieve_size: size,
             }),
         }
-    }
-
-    /// Of four pixels one is rock, one no rock: less than half is outlined; of three it is half.
-    #[test]
-    fn little_of_a_photo_is_said() {
-        let photo = PhotoFragments {
-            fragments: Vec::new(),
-            frame: DVec2::ONE,
-            fines: 0.0,
-            limit: 0.0,
-            mm: 1.0,
-        };
-        let said = |labels: &[u32]| {
-            photo.little(&LabelImage {
-                width: labels.len(),
-                height: 1,
-                labels: labels.to_vec(),
-            })
-        };
-        let little = said(&[1, NOT_ROCK, FINES, FINES]).unwrap();
-        assert!(little.contains("only 33 % of it is outlined"), "{little}");
-        assert_eq!(said(&[1, NOT_ROCK, FINES]), None);
-        assert_eq!(said(&[FINES, FINES]), None);
-    }
-
-    /// A circle of twice the next is taken for a ball; a square one, a larger next one and a cut one are not.
-    #[test]
-    fn a_ball_is_round_and_alone() {
-        let photo = |fragments: Vec<Fragment>| PhotoFragments {
-            fragments,
-            frame: DVec2::splat(100.0),
-            fines: 0.0,
-            limit: 0.1,
-            mm: 1.0,
-        };
-        let [small, large] = [1.0, 2.0].map(|size| fragment(size, 0.0, false));
-        assert!(photo(vec![small, large]).ball().is_some());
-        assert_eq!(photo(vec![fragment(1.6, 0.0, false), large]).ball(), None);
-        assert_eq!(photo(vec![small, fragment(2.0, 0.0, true)]).ball(), None);
-        assert_eq!(photo(vec![large]).ball(), None);
-        let mut square = large;
-        // The circle of a square's area is 1.13 times its side.
-        square.world.as_mut().unwrap().inscribed = 2.0 / 1.13;
-        assert_eq!(photo(vec![small, square]).ball(), None);
     }
 
     /// Circles of 1 and 2: their areas are as 1 to 4. As much fines as rock.

@@ -266,58 +266,6 @@ fn refused() {
     }
 }
 
-/// A mask about three others that cover most of it is a heap; one about two, or about three that cover little, is none.
-#[test]
-fn heaps_are_left_out() {
-    let part = Part {
-        left: 0,
-        top: 0,
-        right: 64,
-        bottom: 64,
-        first: 0,
-        above: 0,
-        columns: 64,
-        rows: 64,
-    };
-    let seen = Seen {
-        part: &part,
-        size: [64; 2],
-        full: [64; 2],
-    };
-    let mut all = Instances::default();
-    let mut add = |columns: std::ops::Range<usize>, rows: std::ops::Range<usize>| {
-        let chances = vec![1.0; columns.len() * rows.len()];
-        let mask = Mask {
-            of: [64; 2],
-            columns,
-            rows,
-            chances,
-            score: 0.9,
-        };
-        let instance = seen.instance(&mask).unwrap();
-        assert!(!all.has_surer(&instance));
-        assert!(all.add(instance.clone(), 64 * 64));
-        assert!(all.has_surer(&instance));
-    };
-    // A heap of three stones of 10 x 16, two faces in one, and three small stones on a large one.
-    add(0..32, 0..16);
-    [0..10, 11..21, 22..32]
-        .into_iter()
-        .for_each(|x| add(x, 0..16));
-    add(0..30, 20..40);
-    [0..14, 16..30].into_iter().for_each(|x| add(x, 20..40));
-    add(0..40, 44..64);
-    [0..10, 12..22, 24..34]
-        .into_iter()
-        .for_each(|x| add(x, 50..60));
-    all.leave_out_heaps();
-    let (labels, sure) = all.painted(64, 64);
-    assert_eq!(sure.len(), 3 + 3 + 4);
-    assert_eq!(labels.labels[10], FINES, "between the stones of the heap");
-    assert_ne!(labels.labels[30 * 64 + 15], FINES, "between the faces");
-    assert_ne!(labels.labels[62 * 64 + 2], FINES);
-}
-
 /// What only shows when it runs.
 #[test]
 fn refused_while_it_runs() {

@@ -23,6 +23,7 @@
 mod folder;
 mod footprints;
 mod kml;
+mod list;
 mod objects;
 mod photo_footprint;
 mod photo_names;
@@ -41,7 +42,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 pub use folder::Replace;
-pub use folder::other_flight_in;
+pub use list::other_flight_in;
 pub use plan::export_folders;
 
 use self::folder::ExportFolder;
@@ -269,7 +270,7 @@ fn still_there(request: &ExportRequest<'_>, chosen: &[usize]) -> Result<(), Faul
                 "the photos' files are gone since the flight was opened ({} is not there)",
                 first.display()
             ),
-            "bring them back; for the scales alone take the folder of the photos out of the flight (photos.folder), and open it again",
+            "bring them back; for the scales alone open the flight again, without its photos",
         )),
         _ => Ok(()),
     }

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::source::Source;
+use super::source::{Named, Source};
 use crate::fault::Fault;
 use crate::files::FileError;
 use crate::flight::{CameraEntry, CameraSource};
@@ -108,7 +108,7 @@ pub(super) fn take_sizes(
         let photos: Vec<WantedPhoto<'_>> =
             photos.map(|photo| (photo.name.as_str(), None)).collect();
         let of_photos = source.photo_folder.as_deref();
-        let folder = photo_folder(of_photos, source.photo_folder_is_named, &photos);
+        let folder = photo_folder(of_photos, source.photo_folder_named, &photos);
         let mut said = Vec::new();
         set_sizes_from_files(reconstruction, &folder, given, &mut said).map_err(at)?;
         source.warn(path, &said);
@@ -119,19 +119,20 @@ pub(super) fn take_sizes(
 /// The folder of the photos. One that somebody named for them is looked through with the folders in it.
 fn photo_folder<'a>(
     path: Option<&'a Path>,
-    is_named: bool,
+    named: Named,
     photos: &[WantedPhoto<'_>],
 ) -> PhotoFolder<'a> {
-    match is_named {
-        true => PhotoFolder::named(path, photos),
-        false => PhotoFolder::new(path),
+    match named {
+        Named::Now | Named::InFlight => PhotoFolder::named(path, photos),
+        Named::ByPackage => PhotoFolder::new(path),
     }
 }
 
-/// Finds the photo files, and scales each camera to the size of its own.
+/// Finds the photo files, and scales each camera to the size of its own. Where the folder that a flight.toml names is gone, or holds
+/// other photos, that is said, and each photo is doubted for its missing file.
 ///
 /// # Errors
-/// Where the folder that somebody named cannot be the photos'.
+/// Where the folder that somebody named just now cannot be the photos'.
 pub(super) fn fit(source: &mut Source) -> Result<Vec<PhotoFile>, FileError> {
     let photos = source.photos.iter().enumerate();
     let photos = photos.map(|(index, photo)| {
@@ -142,28 +143,40 @@ pub(super) fn fit(source: &mut Source) -> Result<Vec<PhotoFile>, FileError> {
     });
     let photos: Vec<WantedPhoto<'_>> = photos.collect();
     let path = source.photo_folder.as_deref();
-    let folder = photo_folder(path, source.photo_folder_is_named, &photos);
+    let folder = photo_folder(path, source.photo_folder_named, &photos);
+    let mut are_elsewhere = false;
     if let Some(path) = &source.photo_folder
-        && source.photo_folder_is_named
+        && source.photo_folder_named != Named::ByPackage
     {
-        folder
-            .check(
-                &source
-                    .photos
-                    .iter()
-                    .map(|photo| photo.name.as_str())
-                    .collect::<Vec<_>>(),
-            )
-            .map_err(|fault| FileError::new(path, fault))?;
-        let chosen = folder.chosen_by_size();
-        source
-            .warnings
-            .extend(chosen.map(|said| format!("{}: {said}", path.display())));
+        let names: Vec<&str> = photos.iter().map(|(name, _)| *name).collect();
+        match folder.check(&names) {
+            Err(fault) if source.photo_folder_named == Named::Now => {
+                return Err(FileError::new(path, fault));
+            }
+            Err(fault) => {
+                are_elsewhere = true;
+                let said = format!(
+                    "{}: {}, where the flight says that its photos are: it is opened without them, and their sizes are not checked ({})",
+                    path.display(),
+                    fault.what,
+                    fault.remedy
+                );
+                source.warnings.push(said);
+            }
+            Ok(()) => {
+                let chosen = folder.chosen_by_size();
+                let said = chosen.map(|said| format!("{}: {said}", path.display()));
+                source.warnings.extend(said);
+            }
+        }
     }
     let mut photo_files = files_of(&folder, &source.photos);
     for (index, file) in photo_files.iter_mut().enumerate() {
         file.named_size = source.named_sizes.get(index).copied().flatten();
         file.may_be_reduced = source.may_be_reduced;
+    }
+    if are_elsewhere {
+        return Ok(photo_files);
     }
     source.photo_doubts.extend(fit_cameras_to_files(
         &folder,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::source::{Source, name_of};
+use super::source::{Named, Source, name_of};
 use super::{FlightReconstruction, OpenOptions};
 use super::{cameras, image_points};
 use crate::fault::Fault;
@@ -74,8 +74,10 @@ fn of_file(path: &Path, options: &OpenOptions, progress: &Progress) -> Result<So
     source.inputs.push(path.to_owned());
     let file_in = |name: Option<&str>| name.map(|name| folder.join(name));
     source.surface = source.surface.or(file_in(file.surface()));
-    source.photo_folder = source.photo_folder.or(file_in(file.photo_folder()));
-    source.photo_folder_is_named = source.photo_folder.is_some();
+    if let (None, Some(folder)) = (&source.photo_folder, file_in(file.photo_folder())) {
+        source.photo_folder = Some(folder);
+        source.photo_folder_named = Named::InFlight;
+    }
     source.unit_is_stated = file.unit().is_some();
     source.topic = source.topic.or(file.topic().map(str::to_owned));
     match file.photo_source() {

@@ -49,8 +49,8 @@ pub(super) struct Source {
     pub(super) moving: Option<Moving>,
     pub(super) reconstruction_cloud: CloudFile,
     pub(super) photo_folder: Option<PathBuf>,
-    /// Whether somebody named that folder, so that it must be the photos'.
-    pub(super) photo_folder_is_named: bool,
+    /// Who named that folder as the photos'.
+    pub(super) photo_folder_named: Named,
     /// The size that the package names for each photo, and whether it may have been reduced; empty
     /// without a reconstruction.
     pub(super) named_sizes: Vec<Option<(u32, u32)>>,
@@ -70,6 +70,17 @@ pub(super) struct Source {
     pub(super) doubts: Vec<Doubt>,
     /// What speaks against single ones, by their index.
     pub(super) photo_doubts: Vec<(usize, Doubt)>,
+}
+
+/// Who named the folder of the photos.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Named {
+    /// Nobody but a package, whose folder may be another machine's.
+    ByPackage,
+    /// A flight.toml, perhaps long ago: its disk may be elsewhere today, and the flight is worth seeing all the same.
+    InFlight,
+    /// Whoever opens the flight: what is no folder of its photos is a slip.
+    Now,
 }
 
 impl Source {
@@ -98,7 +109,10 @@ impl Source {
             moving: None,
             reconstruction_cloud: CloudFile::default(),
             photo_folder: options.photos.clone(),
-            photo_folder_is_named: options.photos.is_some(),
+            photo_folder_named: match options.photos {
+                Some(_) => Named::Now,
+                None => Named::ByPackage,
+            },
             named_sizes: Vec::new(),
             may_be_reduced: false,
             package_unit: None,

@@ -5,7 +5,9 @@ mod holes;
 use glam::DVec2;
 use proptest::prelude::*;
 
+use super::caster::Way;
 use super::*;
+use crate::geometry::Ray;
 
 fn cloud(points: Vec<DVec3>) -> Cloud {
     Cloud {

@@ -26,6 +26,7 @@ use crate::panels::reconstruct_offer;
 use crate::panels::size_distributions::{
     add_distributions, add_effort, paste, save_figure, save_report, save_table,
 };
+use crate::state::leaving::Leaving;
 use crate::state::{HeldBack, State};
 use crate::typed::typed;
 use crate::units::LengthUnit;
@@ -231,6 +232,11 @@ fn unsaved(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             "The settings of {}, what was decided of its photos, its control points, its flight plan or the outlines of fragments have changed since they were saved.",
             names::fitted(ui, name, &body, 300.0)
         ));
+        // She may have named it a while ago.
+        if let Some(HeldBack::Leave(Leaving::Take(arrived))) = &state.held_back {
+            let name = names::fitted(ui, arrived.name(), &body, 300.0);
+            ui.label(format!("{name} was read, to be shown in its place."));
+        }
     }
     ui.add_space(8.0);
     ui.horizontal(|ui| {

@@ -263,9 +263,11 @@ impl Screen {
         if let Some((ground, bounds)) = &drawn.ground {
             painter.image(ground.id(), over(*bounds), whole, tint);
         }
+        let shown = open.map.shown(&made.plan, self.map.bounds());
+        let shown = shown.unwrap_or(drawn);
         painter.image(
-            drawn.photos.id(),
-            over(drawn.frame.bounds()),
+            shown.photos.id(),
+            over(shown.frame.bounds()),
             whole,
             Color32::WHITE,
         );

@@ -2,7 +2,7 @@
 
 use egui::{ComboBox, Ui};
 
-use super::found::found;
+use super::found::{found, refused};
 use super::places::places;
 use crate::command::{Answers, Asking, Command, Dialog};
 use crate::numbers::to_digits;
@@ -37,6 +37,10 @@ pub fn asked_of_plan(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
     if is_missing && state.work.may_start(Task::PLAN, now) {
         commands.push(Command::Plan(PlanStep::Make));
     }
+    if planning.flown.is_none() {
+        // The fields alone are higher than a small window.
+        refused(open, ui, commands);
+    }
     egui::ScrollArea::vertical()
         .auto_shrink(false)
         .show_focused(ui, |ui| {
@@ -46,7 +50,8 @@ pub fn asked_of_plan(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
             if &asked != now {
                 commands.push(Command::Plan(PlanStep::Ask(Box::new(asked))));
             }
-            if planning.flown.is_none() {
+            // The numbers of another plan would be taken for those of one that is refused.
+            if planning.flown.is_none() && planning.refused().is_none() {
                 ui.separator();
                 found(state, open, ui, commands);
             }

@@ -11,20 +11,25 @@ use crate::planning::PlanStep;
 use crate::state::State;
 use crate::tasks::Task;
 
+/// Why nothing is planned, where that is so.
+pub(super) fn refused(open: &OpenFlight, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let Some(why) = open.planning.refused() else {
+        return;
+    };
+    ui.colored_label(ui.visuals().error_fg_color, why);
+    if ui
+        .button("Plan again")
+        .on_hover_text("Try the same once more")
+        .clicked()
+    {
+        commands.push(Command::Plan(PlanStep::Make));
+    }
+    ui.separator();
+}
+
 pub(super) fn found(state: &State, open: &OpenFlight, ui: &mut Ui, commands: &mut Vec<Command>) {
     let planning = &open.planning;
-    if let Some(why) = planning.refused() {
-        ui.colored_label(ui.visuals().error_fg_color, why);
-        if ui
-            .button("Plan again")
-            .on_hover_text("Try the same once more")
-            .clicked()
-        {
-            commands.push(Command::Plan(PlanStep::Make));
-        }
-        // The numbers of another plan would be taken for those of this one.
-        return;
-    } else if state.work.is_running(Task::PLAN) {
+    if state.work.is_running(Task::PLAN) {
         ui.horizontal(|ui| {
             working(ui);
             ui.label("Planning…");

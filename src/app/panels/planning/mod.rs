@@ -3,7 +3,7 @@
 //! ```text
 //! asked   fields of what is asked for
 //! flown   a mission against the flight that came of it
-//! found   what the plan comes to, and what it lacks
+//! found   what the plan comes to, and what it lacks; why there is none
 //! places  areas, take-off, photos by hand
 //! photos  the planned photos, and the one that is looked at
 //! ```

@@ -9,7 +9,7 @@ mod volume;
 use crate::command::{Asking, Command, MeasuredTable};
 use crate::open_flight::survey::{SurveyStep, SurveyTool};
 use crate::state::State;
-use beside_line::beside_its_line;
+use beside_line::beside_what_is_looked_at;
 
 /// The small window of the tool that is taken; it can be moved.
 pub fn survey_panel(
@@ -31,16 +31,12 @@ pub fn survey_panel(
         SurveyTool::Volume => "Volume",
     };
     let mut stays = true;
-    let mut window = egui::Window::new(title)
+    let window = egui::Window::new(title)
         .open(&mut stays)
         .constrain_to(place)
-        .default_pos(place.left_bottom() + egui::vec2(8.0, -8.0))
         .pivot(egui::Align2::LEFT_BOTTOM)
-        .default_width((place.width() - 16.0).clamp(180.0, 440.0))
         .resizable([true, false]);
-    if drawn.tool == SurveyTool::Profile && drawn.finished {
-        window = beside_its_line(window, state, (open, drawn), context, place);
-    }
+    let window = beside_what_is_looked_at(window, state, (open, drawn), context, place);
     window.show(context, |ui| {
         match drawn.tool {
             SurveyTool::Profile => profile::profile(open, drawn, ui, commands),

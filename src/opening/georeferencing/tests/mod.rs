@@ -14,6 +14,7 @@ use crate::flight::FlightFile;
 use crate::formats::{MeasuredPosition, PosedPhoto, Sizes};
 use crate::geodesy::Crs;
 use crate::geometry::Similarity;
+use crate::units::LengthUnit;
 use fragscale_test_data::shared_data;
 
 /// From the reconstruction's frame, whose z is nowhere near up, to UTM.

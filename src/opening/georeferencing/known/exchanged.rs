@@ -11,7 +11,7 @@ const MOST: usize = 12;
 const BETTER: f64 = 5.0;
 
 /// The names of the two of `known` with which exchanged all fit well, and only these two.
-pub(super) fn exchanged<'a>(known: &[&'a Known]) -> Option<[&'a str; 2]> {
+pub(in crate::georeferencing) fn exchanged<'a>(known: &[&'a Known]) -> Option<[&'a str; 2]> {
     if !(3..=MOST).contains(&known.len()) {
         return None;
     }

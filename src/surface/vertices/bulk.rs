@@ -17,7 +17,7 @@ const MARGIN: f64 = 0.1;
 /// So many points stand for all.
 const SAMPLE: usize = 200_000;
 
-/// The box around all of these points but outliers, as [`Surface::bulk_bounds`](super::Surface::bulk_bounds);
+/// The box around all of these points but outliers, as [`Surface::bulk_bounds`](crate::surface::Surface::bulk_bounds);
 /// `None` without points.
 pub fn bulk_of(points: &[DVec3]) -> Option<Bounds> {
     Some(bulk(points.iter().copied(), Bounds::of(points)?))

@@ -8,28 +8,29 @@
 //! Paths are those from the folder of the results where the two have more than the root in common, so that a season
 //! can be moved with its flights. There is no time in it.
 
+mod left_over;
+mod place;
+
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+pub(crate) use left_over::write_failed;
+pub use left_over::{remove_unfinished_below, remove_what_is_left};
+
+use self::place::Place;
 use crate::asked::Asked;
 use crate::exports::FlightFindings;
 use crate::fault::Fault;
-use crate::files::{self, FAILED_MARK, FileError, Inputs, Kind, cannot_be};
-use crate::files::{sha256_of_bytes, sha256_of_file};
+use crate::files::{self, FileError, Inputs, Kind, cannot_be, sha256_of_file};
 use crate::jobs::Progress;
-use crate::opening::path_from;
 use crate::told::FlightTold;
 
 /// The record's file.
 pub(crate) const NAME: &str = "flight.json";
-
-/// Where it is said that the flight failed.
-const FAILED: &str = "failed.txt";
 
 /// A record that is larger is none of ours.
 const LARGEST: u64 = 256 << 20;
@@ -216,182 +217,9 @@ impl Record {
     }
 }
 
-/// Takes away what is in the folder of a flight's results and was not written now: results that earlier runs wrote for
-/// steps or photos that are not there any more. `before` are those that are known from the record; others are known by
-/// their marks. Files of others stay. Returns how many were taken away, by the file or the folder (with a slash) beside the record that
-/// they were or lay in; the word that the flight failed does not count.
-///
-/// # Errors
-/// Where the folder cannot be listed, or a file not removed.
-pub fn remove_what_is_left(
-    to: &Path,
-    written: &[PathBuf],
-    before: &BTreeMap<String, String>,
-) -> Result<BTreeMap<String, usize>, FileError> {
-    let place = Place::of(to)?;
-    let written = place.below(written);
-    let mut taken_away = BTreeMap::new();
-    for (name, path) in files_below(&place.to)? {
-        let is_result = || {
-            let bytes = files::read_bytes(&path).unwrap_or_default();
-            files::is_own_result(&bytes) || before.get(&name) == Some(&sha256_of_bytes(&bytes))
-        };
-        let stays = name == NAME || written.contains(&name);
-        if !stays && is_result() {
-            remove(&path)?;
-            if name != FAILED {
-                let kind = name.split_inclusive('/').next().unwrap_or(&name);
-                *taken_away.entry(kind.to_owned()).or_insert(0) += 1;
-            }
-            // Folders that are empty now go, too; one that is not, stays.
-            let mut folder = path.parent();
-            while let Some(empty) = folder.filter(|folder| *folder != place.to) {
-                if fs::remove_dir(empty).is_err() {
-                    break;
-                }
-                folder = empty.parent();
-            }
-        }
-    }
-    Ok(taken_away)
-}
-
-/// Says in the folder of a flight's results, where there is one, that the flight failed: what stands there may be of files
-/// that are not so any more. It stays, for hours of outlining go on from it; the flight's next success takes the word away.
-///
-/// # Errors
-/// Where it cannot be written.
-pub(crate) fn write_failed(to: &Path, error: &str) -> Result<(), FileError> {
-    if !to.is_dir() {
-        return Ok(());
-    }
-    let path = to.join(FAILED);
-    let text = format!(
-        "{FAILED_MARK}\n{error}\nResults beside this file may be of an earlier run, of other files than now.\n"
-    );
-    files::write(
-        &path,
-        text.as_bytes(),
-        Kind::Result,
-        &Inputs::default(),
-        false,
-    )
-    .map_err(|fault| FileError::new(&path, fault))
-}
-
-/// Takes away what a killed process had not finished.
-///
-/// # Errors
-/// Where the folder cannot be listed, or a file not removed.
-pub fn remove_unfinished_below(to: &Path) -> Result<(), FileError> {
-    for (_, path) in files_below(to)? {
-        if files::is_unfinished(&path) {
-            remove(&path)?;
-        }
-    }
-    Ok(())
-}
-
-fn remove(path: &Path) -> Result<(), FileError> {
-    fs::remove_file(path).map_err(|error| FileError::new(path, cannot_be("removed", &error)))
-}
-
-/// Where paths are counted from.
-struct Place {
-    /// The folder of the results, from the root with links followed.
-    to: PathBuf,
-}
-
-impl Place {
-    fn of(to: &Path) -> Result<Self, FileError> {
-        let to =
-            fs::canonicalize(to).map_err(|error| FileError::new(to, cannot_be("read", &error)))?;
-        Ok(Self { to })
-    }
-
-    /// Of these files those below the folder, by their paths from it with slashes.
-    fn below(&self, paths: &[PathBuf]) -> BTreeSet<String> {
-        let real = paths.iter().filter_map(|path| fs::canonicalize(path).ok());
-        let inside = real.filter_map(|path| {
-            let inside = path.strip_prefix(&self.to).ok()?;
-            Some(inside.to_string_lossy().replace('\\', "/"))
-        });
-        inside.collect()
-    }
-
-    /// A path as the record has it.
-    fn name(&self, path: &Path) -> Result<String, FileError> {
-        path_from(&self.to, path).map_err(|fault| FileError::new(path, fault))
-    }
-
-    fn named(&self, told: &FlightTold) -> Result<Named, FileError> {
-        let maybe =
-            |path: &Option<PathBuf>| path.as_deref().map(|path| self.name(path)).transpose();
-        Ok(Named {
-            flight: self.name(&told.flight)?,
-            surface: maybe(&told.surface)?,
-            photos: maybe(&told.photos)?,
-            reference: maybe(&told.reference)?,
-            asked: told.asked.clone(),
-        })
-    }
-
-    /// A checksum of the names in a folder, and in those in it where outlines are saved. What lies in the folder of
-    /// the results, or is it, does not count; nor do hidden files, which systems put anywhere.
-    fn names_in(&self, folder: &Path) -> Result<String, FileError> {
-        let mut names = BTreeSet::new();
-        let entries = |folder: &Path| {
-            fs::read_dir(folder)
-                .map_err(|error| FileError::new(folder, files::unreadable_folder(&error)))
-        };
-        for entry in entries(folder)?.flatten() {
-            let path = entry.path();
-            let name = entry.file_name().to_string_lossy().into_owned();
-            if name.starts_with('.') || self.to.starts_with(fs::canonicalize(&path).unwrap_or(path))
-            {
-                continue;
-            }
-            names.insert(name);
-        }
-        let outlines = folder.join("fragments");
-        if outlines.is_dir()
-            && !self
-                .to
-                .starts_with(fs::canonicalize(&outlines).unwrap_or_default())
-        {
-            let inside = entries(&outlines)?.flatten();
-            names.extend(inside.map(|entry| format!("/{}", entry.file_name().to_string_lossy())));
-        }
-        let all: Vec<String> = names.into_iter().collect();
-        Ok(sha256_of_bytes(all.join("\n").as_bytes()))
-    }
-}
-
 fn checksum(path: &Path, progress: &Progress) -> Result<String, FileError> {
     sha256_of_file(path, || progress.is_cancelled())
         .map_err(|error| FileError::new(path, cannot_be("read", &error)))
-}
-
-/// The files below a folder: their paths from it, with slashes, and in full. Links to folders are not followed.
-fn files_below(folder: &Path) -> Result<Vec<(String, PathBuf)>, FileError> {
-    let mut found = Vec::new();
-    let mut waiting = vec![(String::new(), folder.to_owned())];
-    while let Some((before, folder)) = waiting.pop() {
-        let entries = match fs::read_dir(&folder) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
-            entries => entries
-                .map_err(|error| FileError::new(&folder, files::unreadable_folder(&error)))?,
-        };
-        for entry in entries.flatten() {
-            let name = format!("{before}{}", entry.file_name().to_string_lossy());
-            match entry.file_type() {
-                Ok(kind) if kind.is_dir() => waiting.push((name + "/", entry.path())),
-                _ => found.push((name, entry.path())),
-            }
-        }
-    }
-    found.sort();
-    Ok(found)
 }
 
 #[cfg(test)]
@@ -400,12 +228,12 @@ mod tests {
     use crate::asked::Step;
 
     /// A flight with results, all of them letters.
-    struct Flight {
+    pub(super) struct Flight {
         root: tempfile::TempDir,
-        told: FlightTold,
+        pub(super) told: FlightTold,
     }
 
-    fn flight() -> Flight {
+    pub(super) fn flight() -> Flight {
         let root = tempfile::tempdir().unwrap();
         let at = |name: &str| root.path().join(name);
         for folder in ["flight/photos", "out/a/maps"] {
@@ -440,7 +268,7 @@ mod tests {
             self.root.path().join(name)
         }
 
-        fn record(&self) {
+        pub(super) fn record(&self) {
             let read = [
                 "flight/flight.toml",
                 "flight/pile.ply",
@@ -534,37 +362,5 @@ mod tests {
         assert!(!flight.holds());
         // Killed, and begun again.
         assert_eq!(Record::begin(&flight.told.to).unwrap(), before);
-    }
-
-    #[test]
-    fn what_is_left_goes_and_files_of_others_stay() {
-        let flight = flight();
-        flight.record();
-        let before = Record::begin(&flight.told.to).unwrap();
-        let to = &flight.told.to;
-        for (name, text) in [
-            (".fragscale-abc.part", "half"),
-            (
-                "old/1_labels.csv",
-                "photo,percent_passing,size_cm,low_cm,high_cm\n",
-            ),
-            ("notes.txt", "mine"),
-        ] {
-            fs::create_dir_all(to.join(name).parent().unwrap()).unwrap();
-            fs::write(to.join(name), text).unwrap();
-        }
-        remove_unfinished_below(to).unwrap();
-        write_failed(to, "it failed").unwrap();
-        let taken_away = remove_what_is_left(to, &[to.join("scales.csv")], &before).unwrap();
-        let kinds: Vec<(&str, usize)> = taken_away.iter().map(|(k, n)| (k.as_str(), *n)).collect();
-        assert_eq!(kinds, [("maps/", 1), ("old/", 1)]);
-        let names: Vec<String> = files_below(to)
-            .unwrap()
-            .into_iter()
-            .map(|(name, _)| name)
-            .collect();
-        // The map was ours by the record of before; its folder and the other one are gone, too.
-        assert_eq!(names, ["flight.json", "notes.txt", "scales.csv"]);
-        assert!(!to.join("maps").exists() && !to.join("old").exists());
     }
 }

@@ -1,33 +1,30 @@
 //! What the program understood of a file (contract, section 6), as JSON.
 
+mod flights;
+mod mission;
 mod own;
+mod places;
+mod poses;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
-use glam::DVec2;
 use serde_json::{Value, json};
 
-use crate::camera::{Camera, Pose};
-use crate::fault::Fault;
-use crate::flight::Flight;
+use self::flights::{flight_info, photos_info, reconstruction_info, recording_info};
+use self::mission::mission_info;
+use self::places::known_places_info;
+use self::poses::{camera_info, poses_info, trajectory_info};
 use crate::formats::packages::ros;
-use crate::formats::packages::ros::Recording;
-use crate::formats::photos::photo_metadata::PhotoMetadata;
-use crate::formats::poses::trajectory::Trajectory;
 use crate::formats::{
-    CloudFile, CloudFormat, ControlPoints, DistributionColumns, FileError, ImageUnit, Kind,
-    KnownPlaces, MissionFile, Origin, Package, PhotosAlone, PosesFile, Reconstruction, Sizes,
-    detect, read_camera, read_cloud, read_known_places, read_mission, read_photos, read_poses,
-    read_project, read_size_distributions, read_trajectory,
+    CloudFile, CloudFormat, DistributionColumns, FileError, Kind, Package, PhotosAlone, detect,
+    read_camera, read_cloud, read_mission, read_photos, read_poses, read_project,
+    read_size_distributions, read_trajectory,
 };
 use crate::fragmentation::DistributionSet;
 use crate::geometry::Bounds;
 use crate::jobs::Progress;
-use crate::scale::ImageKind;
 use crate::world::WorldFrame;
 use crate::{OpenOptions, open_flight};
-use fragscale_core::plan::{Height, LostSignal};
 
 /// Reads any supported file or folder and says what it holds.
 ///
@@ -84,13 +81,6 @@ pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
     })
 }
 
-/// A list of known places, or what is wrong with it; `None` of what is none.
-fn known_places_info(path: &Path) -> Option<Result<Value, FileError>> {
-    let places = read_known_places(path)?;
-    let places = places.map_err(|fault| FileError::new(path, fault));
-    Some(places.map(|places| places_info(&places)))
-}
-
 /// A cloud or mesh.
 fn cloud_info(file: &CloudFile) -> Value {
     let bounds = Bounds::of(&file.cloud.points)
@@ -108,166 +98,6 @@ fn cloud_info(file: &CloudFile) -> Value {
         "bounds": bounds,
         "crs": file.crs,
         "warnings": warnings,
-    })
-}
-
-/// Known places: control points with their marks, or where photos were taken; in the list's own system.
-fn places_info(places: &KnownPlaces) -> Value {
-    match places {
-        KnownPlaces::ControlPoints(ControlPoints { list, warnings }) => {
-            let mark = |(photo, pixel): &(String, DVec2)| json!({"photo": photo, "pixel": pixel.to_array()});
-            let points = list.points.iter().map(|point| {
-                json!({
-                    "name": point.name,
-                    "position": point.position.map(|position| position.to_array()),
-                    "marks": point.marks.iter().map(mark).collect::<Vec<_>>(),
-                })
-            });
-            let marks = list.points.iter().map(|point| point.marks.len());
-            json!({
-                "kind": "control-points",
-                "crs": list.crs,
-                "points": points.collect::<Vec<_>>(),
-                "marks": marks.sum::<usize>(),
-                "scale_bars": list.bars.len(),
-                "warnings": warnings,
-            })
-        }
-        KnownPlaces::OfPhotos(list) => {
-            let positions = list.positions.iter().map(|of| {
-                json!({
-                    "photo": of.name,
-                    "position": of.position.to_array(),
-                    "accuracy": of.accuracy.map(|accuracy| accuracy.to_array()),
-                })
-            });
-            json!({
-                "kind": "positions",
-                "crs": list.crs,
-                "positions": positions.collect::<Vec<_>>(),
-                "warnings": list.warnings,
-            })
-        }
-    }
-}
-
-/// A drone's mission: degrees of WGS 84, metres, metres a second; headings clockwise from true north.
-fn mission_info(file: &MissionFile) -> Value {
-    let mission = &file.mission;
-    let height =
-        |height: Height| json!({"metres": height.metres, "above": height.above.in_words()});
-    let stops = mission.stops.iter().zip(mission.gimbal_pitches());
-    let stops = stops.map(|(stop, pitch)| {
-        json!({
-            "latitude": stop.latitude,
-            "longitude": stop.longitude,
-            "height": height(stop.height),
-            "heading": stop.heading,
-            "gimbal_pitch": pitch,
-            "waits": stop.settle,
-            "photo": stop.photo.is_some(),
-            "name": stop.photo.as_ref().and_then(|photo| photo.name.as_deref()),
-        })
-    });
-    let fences = mission.fences.iter();
-    let fences = fences.map(|fence| json!({"keep_in": fence.keep_in, "corners": fence.corners}));
-    json!({
-        "kind": "mission",
-        "format": file.format,
-        "name": mission.name,
-        "drone": mission.drone.map(|codes| json!({
-            "drone": codes.drone,
-            "drone_sub": codes.drone_sub,
-            "payload": codes.payload.map(|payload| payload.payload),
-        })),
-        "take_off": mission.take_off.map(|at| json!({
-            "latitude": at.latitude,
-            "longitude": at.longitude,
-            "elevation": at.elevation.map(height),
-        })),
-        "speed": mission.speed,
-        "safe_height": mission.safe_height,
-        "return_height": mission.return_height,
-        "finish": mission.finish.in_words(),
-        "lost_signal": mission.lost_signal.map(LostSignal::in_words),
-        "photos": mission.stops.iter().filter(|stop| stop.photo.is_some()).count(),
-        "stops": stops.collect::<Vec<_>>(),
-        "fences": fences.collect::<Vec<_>>(),
-        "warnings": file.notes,
-    })
-}
-
-/// A reconstruction in its own frame.
-fn reconstruction_info(reconstruction: &Reconstruction) -> Value {
-    let has_observations = !reconstruction.observations.is_empty();
-    let cameras: Vec<Value> = reconstruction
-        .cameras
-        .iter()
-        .map(|camera| {
-            let mut value = camera_value(camera);
-            if let Sizes::Unknown {
-                unit,
-                principal_points_from,
-            } = reconstruction.sizes
-            {
-                // What a package does not write is null, not 0.
-                value["width"] = Value::Null;
-                value["height"] = Value::Null;
-                if unit == ImageUnit::LongerSide {
-                    for name in ["fx", "fy", "skew"] {
-                        value[name] = Value::Null;
-                    }
-                }
-                if principal_points_from == Origin::Middle {
-                    value["cx"] = Value::Null;
-                    value["cy"] = Value::Null;
-                }
-            }
-            value
-        })
-        .collect();
-    let photos = reconstruction.photos.iter().map(|photo| {
-        let camera = reconstruction.cameras.get(photo.camera);
-        let camera = camera.map(|camera| camera.name.as_str());
-        photo_value(&photo.name, camera, &photo.pose)
-    });
-    json!({
-        "kind": "reconstruction",
-        "package": reconstruction.package,
-        "crs": reconstruction.crs,
-        "points": reconstruction.cloud.points.len(),
-        "observations": has_observations.then_some(reconstruction.observations.len()),
-        "median_reprojection_px": reconstruction.median_reprojection_px(),
-        "warnings": reconstruction.warnings,
-        "cameras": cameras,
-        "photos": photos.collect::<Vec<_>>(),
-    })
-}
-
-/// Photos of which none can be placed, and why.
-fn photos_info(photos: &[(String, PhotoMetadata)], fault: &Fault) -> Value {
-    let name = |photo: &PhotoMetadata| {
-        let is_named = photo.make.is_some() || photo.model.is_some();
-        is_named.then(|| photo.camera_name())
-    };
-    let mut cameras: BTreeMap<(Option<String>, (u32, u32)), usize> = BTreeMap::new();
-    for (_, photo) in photos {
-        *cameras.entry((name(photo), photo.size)).or_default() += 1;
-    }
-    let cameras = cameras.iter().map(|((name, (width, height)), count)| {
-        json!({"name": name, "width": width, "height": height, "photos": count})
-    });
-    let each = photos.iter().map(|(photo, metadata)| {
-        let (width, height) = metadata.size;
-        json!({"photo": photo, "camera": name(metadata), "width": width, "height": height})
-    });
-    let positions = photos.iter().filter(|(_, photo)| photo.place.is_some());
-    json!({
-        "kind": "photos",
-        "cameras": cameras.collect::<Vec<_>>(),
-        "photos": each.collect::<Vec<_>>(),
-        "positions": positions.count(),
-        "warnings": [format!("it is no flight: {fault}")],
     })
 }
 
@@ -299,121 +129,6 @@ fn distributions_info(set: &DistributionSet, warnings: &[String]) -> Value {
         "smallest_size": sizes().min_by(f64::total_cmp),
         "largest_size": sizes().max_by(f64::total_cmp),
         "warnings": warnings,
-    })
-}
-
-/// A camera's calibration.
-fn camera_info(camera: &Camera) -> Value {
-    let warnings: [&str; 0] = [];
-    json!({"kind": "camera", "cameras": [camera_value(camera)], "warnings": warnings})
-}
-
-/// The poses of photos.
-fn poses_info(file: &PosesFile) -> Value {
-    let photos = file
-        .lines
-        .iter()
-        .map(|line| photo_value(&line.photo, line.camera.as_deref(), &line.pose));
-    json!({
-        "kind": "poses",
-        "crs": file.crs,
-        "photos": photos.collect::<Vec<_>>(),
-        "warnings": file.warnings,
-    })
-}
-
-/// A trajectory: its stamps stand for photos, and no camera is known.
-fn trajectory_info(trajectory: &Trajectory) -> Value {
-    let poses = trajectory.poses.iter();
-    let photos = poses.map(|p| photo_value(&p.name, None, &p.pose));
-    let mut warnings = vec![trajectory.format.caveat()];
-    warnings.extend(trajectory.warnings.iter().map(String::as_str));
-    json!({
-        "kind": "poses",
-        "photos": photos.collect::<Vec<_>>(),
-        "warnings": warnings,
-    })
-}
-
-/// A ROS recording: what a reconstruction says where it is a flight, else its poses; in both cases its
-/// topics.
-fn recording_info(recording: &Recording) -> Value {
-    let mut value = match recording.reconstruction() {
-        Ok(reconstruction) => reconstruction_info(&reconstruction),
-        Err(fault) => {
-            let mut warnings = recording.warnings();
-            warnings.push(format!("it is no flight: {fault}"));
-            let poses = recording.named_poses();
-            let photos = poses
-                .iter()
-                .map(|(name, pose)| photo_value(name, None, pose));
-            json!({
-                "kind": "poses",
-                "photos": photos.collect::<Vec<_>>(),
-                "warnings": warnings,
-            })
-        }
-    };
-    let topics = recording.topics.iter().map(|topic| {
-        json!({
-            "name": topic.name,
-            "type": topic.type_name,
-            "messages": topic.messages,
-            "gives_poses": recording.gives_poses(topic),
-        })
-    });
-    value["messages"] = recording.messages().into();
-    value["topics"] = topics.collect();
-    value
-}
-
-/// A flight, opened with all its files: cameras at their photos' size, photos in the world.
-fn flight_info(flight: &Flight, warnings: &[String]) -> Value {
-    let parts = flight.parts();
-    let photos = parts
-        .photos
-        .iter()
-        .map(|photo| photo_value(&photo.name, Some(&flight.camera(photo).name), &photo.pose));
-    let image = match parts.image {
-        ImageKind::Undistorted => "undistorted",
-        ImageKind::AsShot => "as-shot",
-    };
-    json!({
-        "kind": "flight",
-        "flight": parts.name,
-        // Of a model in a frame of its own nobody knows it.
-        "world_unit": parts.unit_known.then(|| parts.unit.symbol()),
-        "crs": parts.as_read.system.as_ref().map(|system| &system.name),
-        "image": image,
-        "surface_vertices": parts.surface.vertices().len(),
-        "cameras": parts.cameras.iter().map(camera_value).collect::<Vec<_>>(),
-        "photos": photos.collect::<Vec<_>>(),
-        "warnings": warnings,
-    })
-}
-
-fn camera_value(camera: &Camera) -> Value {
-    json!({
-        "name": camera.name,
-        "width": camera.width,
-        "height": camera.height,
-        "fx": camera.fx,
-        "fy": camera.fy,
-        "cx": camera.cx,
-        "cy": camera.cy,
-        "skew": camera.skew,
-        "distortion": camera.distortion.name(),
-        "coefficients": camera.distortion.coefficients(),
-    })
-}
-
-/// A photo with its centre and its rotation `world_from_camera`, row-major.
-fn photo_value(name: &str, camera: Option<&str>, pose: &Pose) -> Value {
-    json!({
-        "photo": name,
-        "camera": camera,
-        "center": pose.center.to_array(),
-        "rotation": pose.rotation.transpose().to_cols_array(),
     })
 }
 

@@ -16,7 +16,7 @@ const VERTICES_PER_BLOCK: usize = 256;
 pub struct VertexBlock {
     /// In the world.
     pub bounds: Bounds,
-    /// Indices into the order of [`Surface::vertices`](super::Surface::vertices).
+    /// Indices into the order of [`Surface::vertices`](crate::surface::Surface::vertices).
     pub range: Range<usize>,
 }
 
