@@ -6,6 +6,12 @@ pub const TO_95_PERCENT: f64 = 1.959_963_984_540_054;
 /// Half an interval below this share of its value is none.
 const NO_WIDTH: f64 = 1e-6;
 
+/// "1 flight", "3 flights": how many there are of what `one` names.
+pub fn counted(count: usize, one: &str) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{count} {one}{ending}")
+}
+
 /// A number with at least so many significant digits, without an exponent, for people to read and
 /// type.
 pub fn significant_digits(number: f64, digits: u8) -> String {
@@ -295,6 +301,12 @@ mod tests {
             assert_eq!(round_near(number), Some(near), "{number}");
         }
         assert_eq!(round_near(f64::NAN), None);
+    }
+
+    #[test]
+    fn one_alone_is_not_many() {
+        let texts = [0, 1, 2].map(|count| counted(count, "other place"));
+        assert_eq!(texts, ["0 other places", "1 other place", "2 other places"]);
     }
 
     #[test]

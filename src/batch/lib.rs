@@ -32,7 +32,7 @@ mod taken_away;
 mod told;
 mod watch;
 
-use fragscale_core::{fault, files, flight, jobs, toml_text, units};
+use fragscale_core::{fault, files, flight, jobs, numbers, toml_text, units};
 use fragscale_exports as exports;
 use fragscale_formats as formats;
 use fragscale_opening as opening;

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::numbers::counted;
+
 /// Of each file or folder of earlier runs that is gone: of how many flights, and how many files.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct TakenAway(BTreeMap<String, (usize, usize)>);
@@ -19,15 +21,11 @@ impl TakenAway {
     /// A line for each file or folder, with how many flights it was of.
     pub fn lines(&self) -> impl Iterator<Item = String> {
         self.0.iter().map(|(kind, &(flights, files))| {
-            let files = match (kind.ends_with('/'), files) {
-                (false, _) => String::new(),
-                (true, 1) => " (1 file)".to_owned(),
-                (true, files) => format!(" ({files} files)"),
+            let files = match kind.ends_with('/') {
+                true => format!(" ({})", counted(files, "file")),
+                false => String::new(),
             };
-            let flights = match flights {
-                1 => "1 flight".to_owned(),
-                flights => format!("{flights} flights"),
-            };
+            let flights = counted(flights, "flight");
             format!("taken away: {kind}{files} of {flights}, which an earlier run wrote and this one does not")
         })
     }

@@ -12,6 +12,7 @@ use crate::fault::one_line;
 use crate::files::{FileError, read_text};
 use crate::geodesy::Crs;
 use crate::jobs::Progress;
+use crate::numbers::counted;
 use crate::opening;
 
 #[derive(Debug, Args)]
@@ -74,10 +75,7 @@ fn season_info(season: &Season) -> Result<Value, FileError> {
     let flights: Vec<Value> = flights.collect();
     let steps = season.asked.steps.iter();
     let steps: Vec<&str> = steps.map(|asked| asked.step.as_str()).collect();
-    let count = match flights.len() {
-        1 => "1 flight".to_owned(),
-        count => format!("{count} flights"),
-    };
+    let count = counted(flights.len(), "flight");
     Ok(json!({
         "kind": "season",
         "what": format!("a season of {count}: 'fragscale batch' goes through it"),

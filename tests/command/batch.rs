@@ -369,6 +369,26 @@ fn a_missing_reference_is_said_first() {
     assert!(!root.join("out/a").exists());
 }
 
+/// A season that names a reference and leaves out psd says so, and holds sizes against it where psd is asked for after all.
+#[test]
+fn a_reference_waits_for_psd() {
+    let root = tempfile::tempdir().expect("a folder");
+    let root = root.path();
+    small(&root.join("a"), 1);
+    let season = "format = 1\nto = \"out\"\nsteps = [\"scales\"]\n[psd]\nreference = \"nosieve.csv\"\n[[flight]]\npath = \"a\"\n";
+    fs::write(root.join("SEASON.toml"), season).expect("written");
+    let output = batch(root, &["SEASON.toml"]);
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(status(&output), 0, "{text}");
+    let said = "warning: SEASON.toml: [psd] names a reference, but psd is not among the steps";
+    assert_eq!(text.matches(said).count(), 1, "{text}");
+    let output = batch(root, &["SEASON.toml", "--steps", "delineate,psd"]);
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(status(&output), 3, "{text}");
+    let missing = "nosieve.csv: there is no such file";
+    assert!(text.contains(missing) && !text.contains(said), "{text}");
+}
+
 /// Of many blasts one was sieved: the others are done all the same, and it is said that nothing holds their sizes.
 #[test]
 fn a_blast_that_nobody_sieved_is_done() {

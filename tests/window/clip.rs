@@ -10,6 +10,7 @@ use fragscale::geometry::LevelBox;
 use glam::DVec3;
 
 use crate::desk::{Desk, Screen, flight};
+use crate::photo_view::wheel;
 use crate::viewport::{on_screen, on_windrow};
 
 const WIDE: Screen = Screen {
@@ -116,6 +117,23 @@ fn a_face_is_dragged() {
     assert!(!desk.shows(Role::Slider, "Face x to"));
     desk.press(Modifiers::NONE, Key::X);
     assert_eq!(desk.open().clip.clipping(), Some(level));
+}
+
+/// Far away handles lie close together, under the mouse wherever it is: she could not come near again.
+#[test]
+fn the_wheel_goes_through_a_handle() {
+    let mut desk = Desk::new(Some(&flight("tests/windrow")));
+    desk.press(Modifiers::NONE, Key::F2);
+    desk.press(Modifiers::NONE, Key::X);
+    let long = |desk: &Desk| {
+        let level = desk.open().clip.level;
+        let on_screen = |at| on_screen(desk, &desk.open().looking.orbit.view(), at);
+        (on_screen(level.high) - on_screen(level.low)).length()
+    };
+    let before = long(&desk);
+    let handle = desk.node(Role::Slider, "Face x to").rect().center();
+    wheel(&mut desk, handle, 100.0);
+    assert!(long(&desk) > 1.1 * before, "{} for {before}", long(&desk));
 }
 
 #[test]

@@ -49,7 +49,8 @@ fn pixel_under(desk: &Desk, at: Pos2) -> DVec2 {
     view.middle * image + DVec2::new(f64::from(off.x), f64::from(off.y)) / zoom
 }
 
-fn wheel(desk: &mut Desk, at: Pos2, up: f32) {
+/// Turns the wheel at a place, until all is drawn.
+pub fn wheel(desk: &mut Desk, at: Pos2, up: f32) {
     desk.harness.hover_at(at);
     desk.harness.event(Event::MouseWheel {
         unit: MouseWheelUnit::Point,

@@ -219,7 +219,6 @@ fn look(
                 .map_err(|error| error.to_string())?
         }
     };
-    // Before the steps that are chosen: one that is left out takes along what the season says of it.
     let of_season = season.asked.names_reference();
     if let Some(steps) = &form.steps {
         season.asked.set_steps(steps);

@@ -42,22 +42,26 @@ pub(super) fn mouse(
     let is_clicked = last.is_some() || !clicks.is_empty();
     commands.extend(clicks.into_iter().map(|at| Command::Click(ray_at(at))));
     commands.extend(last.map(|at| Command::DoubleClick(ray_at(at))));
+    // A handle that lies over the surface takes the mouse, but not the wheel.
+    let over = response.contains_pointer();
+    let over = over.then(|| ui.input(|input| input.pointer.hover_pos()));
+    if let Some(at) = over.flatten() {
+        let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+        let factor = (-f64::from(scroll) * 0.004).exp() / f64::from(pinch);
+        if factor != 1.0 {
+            commands.push(Command::View(ViewChange::Zoom {
+                cursor: scene.pixel(at),
+                size,
+                factor,
+            }));
+        }
+    }
     let Some(at) = response.hover_pos() else {
         if open.pointer.from == Some(PointFrom::Pile) && !response.context_menu_opened() {
             commands.push(Command::Hover(PointFrom::Pile, None));
         }
         return;
     };
-    let cursor = scene.pixel(at);
-    let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-    let factor = (-f64::from(scroll) * 0.004).exp() / f64::from(pinch);
-    if factor != 1.0 {
-        commands.push(Command::View(ViewChange::Zoom {
-            cursor,
-            size,
-            factor,
-        }));
-    }
     if !is_clicked && !response.dragged() && !response.context_menu_opened() {
         linked::hover(open, PointFrom::Pile, Some(ray_at(at)), commands);
     }

@@ -20,6 +20,7 @@ use crate::asked::{Asked, Step};
 use crate::fault::{Fault, first_names};
 use crate::files::{FileError, read_text};
 use crate::flight::Date;
+use crate::numbers::counted;
 
 use below::is_results_folder;
 pub(crate) use naming::results_folder;
@@ -253,13 +254,13 @@ impl Season {
         for (folders, what, [of_one, of_many]) in said {
             let names = folders.iter().map(|folder| folder.display().to_string());
             let names = first_names(names);
-            match folders.len() {
-                0 => {}
-                1 => found.notes.push(format!("1 {what} {of_one}: {names}")),
-                many => found
-                    .notes
-                    .push(format!("{many} {what}s {of_many}: {names}")),
-            }
+            let of_all = match folders.len() {
+                0 => continue,
+                1 => of_one,
+                _ => of_many,
+            };
+            let count = counted(folders.len(), what);
+            found.notes.push(format!("{count} {of_all}: {names}"));
         }
         found.notes.extend(self.without_reference(&found.flights));
         let is_left_out = !self.asked.has(Step::Psd);

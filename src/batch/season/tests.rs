@@ -398,6 +398,7 @@ fn the_header_is_an_example() {
     let text: Vec<&str> = block.map(str::trim_start).collect();
     let season = parsed(&text.join("\n")).unwrap();
     assert_eq!(season.name, "North pit 2026");
+    assert_eq!(season.reference_waits, None);
 }
 
 /// Without a reference nothing comes of psd, which is said before the hours that the rest may take.
@@ -429,4 +430,40 @@ fn flights_without_a_reference_are_said() {
     assert_eq!(said(&of_season, std::slice::from_ref(&alone)), None);
     let without = "steps = [\"delineate\"]\n[[flight]]\npath = \"x\"\n";
     assert_eq!(said(without, &[alone]), None);
+}
+
+/// A reference that no step holds sizes against is said, with the steps that would; and it is there once they are asked for.
+#[test]
+fn a_reference_that_waits_is_said_and_kept() {
+    let said = |season: &Season| {
+        let found = season.flights(Path::new("out")).unwrap();
+        let mut notes = found.notes.into_iter();
+        notes.find(|note| note.contains("names a reference"))
+    };
+    let of_all = "[psd]\nreference = \"s.csv\"\n";
+    let of_flight = "reference = \"own.csv\"\n";
+    let season = |steps: &str, all: &str, flight: &str| {
+        let text = format!("format = 1\n{steps}{all}[[flight]]\npath = \"x\"\n{flight}");
+        parsed(&text).unwrap()
+    };
+    let mut waits = season("steps = [\"export\"]\n", of_all, of_flight);
+    assert_eq!(
+        said(&waits).unwrap(),
+        "a/season.toml: [psd] names a reference, but psd is not among the steps, so no sizes are held against it: write steps = \
+         [\"export\", \"delineate\", \"psd\"], or give --steps export,delineate,psd"
+    );
+    waits.asked.set_steps(&[Step::Delineate, Step::Psd]);
+    assert_eq!(said(&waits), None);
+    assert_eq!(waits.asked.steps[1].options["reference"], ["a/s.csv"]);
+    let of_one = said(&season("", "", of_flight)).unwrap();
+    assert!(
+        of_one.contains(": [[flight]] names a reference")
+            && of_one.ends_with("--steps scales,check,delineate,psd"),
+        "{of_one}"
+    );
+    assert_eq!(said(&season("", "", "")), None);
+    // Whoever leaves psd out of a season that has it knows what she does.
+    let mut left_out = season("steps = [\"delineate\", \"psd\"]\n", of_all, "");
+    left_out.asked.set_steps(&[Step::Scales]);
+    assert_eq!(said(&left_out), None);
 }

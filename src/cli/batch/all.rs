@@ -15,6 +15,7 @@ use crate::cli::{fail, interrupt, print, say};
 use crate::exports::{SeasonRow, season_json_line, size_text};
 use crate::fault::one_line;
 use crate::jobs::{Job, Progress};
+use crate::numbers::counted;
 use crate::units::LengthUnit;
 
 /// Some flights failed.
@@ -115,10 +116,7 @@ impl Batch {
         let page = to.join("season.html");
         say(&format!(
             "{}: {done} done, {as_before} as before, {failed} failed; open {}",
-            match found.flights.len() {
-                1 => "1 flight".to_owned(),
-                count => format!("{count} flights"),
-            },
+            counted(found.flights.len(), "flight"),
             page.display()
         ));
         let text = match self.format {

@@ -13,7 +13,7 @@ use glam::DVec2;
 use serde_json::{Value, json};
 
 use crate::measured::{csv_of, percent, rows_of_text};
-use crate::numbers::significant_digits;
+use crate::numbers::{counted, significant_digits};
 use crate::survey::Polygon;
 use crate::units::LengthUnit;
 use fragscale_core::plan::{
@@ -270,8 +270,7 @@ pub(crate) fn refusals(all: &[Refused]) -> Vec<String> {
         let place = place_in_words(refused.place);
         let others = match more {
             0 => String::new(),
-            1 => " and at 1 other place".to_owned(),
-            more => format!(" and at {more} other places"),
+            more => format!(" and at {}", counted(*more, "other place")),
         };
         format!("no photo at {place}{others}: {}", refused.why)
     });

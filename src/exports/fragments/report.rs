@@ -7,7 +7,7 @@ use crate::fault::Fault;
 use crate::fragmentation::SizeDistribution;
 use crate::html_page::{self, Cell, NONE, heading, names, notes, paragraph, table};
 use crate::markup::escaped;
-use crate::numbers::significant_digits;
+use crate::numbers::{counted, significant_digits};
 use crate::size_distributions::{FigureContents, FigureStyle, Series, figure_svg, passing_figure};
 use crate::units::LengthUnit;
 
@@ -75,10 +75,9 @@ pub(super) fn report_pictures() -> usize {
 pub(super) fn fragments_report(report: &FragmentsReport<'_>) -> Result<String, Fault> {
     let unit = report.unit;
     let title = format!("Fragments of {}", report.flight);
-    let count = report.photos.len();
-    let photos = if count == 1 { "photo" } else { "photos" };
+    let photos = counted(report.photos.len(), "photo");
     let mut body = vec![paragraph(&format!(
-        "{count} {photos}, outlined by: {}. Sizes are sieve openings in {unit}; percentages are of the mass. Intervals are 95 %.",
+        "{photos}, outlined by: {}. Sizes are sieve openings in {unit}; percentages are of the mass. Intervals are 95 %.",
         report.method
     ))];
     body.push(notes(report.warnings));

@@ -10,7 +10,7 @@ use super::photos::{
 use super::{Grid, MapFrame, MeasuredOutline, Plan, PlanGround, PlanInks};
 use crate::drawing::{Anchor, Pen, Shape};
 use crate::flight::Verdict;
-use crate::numbers::significant_digits;
+use crate::numbers::{counted, significant_digits};
 use crate::tiff_pages::PROGRAM;
 use crate::units::LengthUnit;
 
@@ -227,8 +227,7 @@ fn legend(rows: &[Row], [left, top]: [f64; 2], inks: &PlanInks, pen: &mut Pen) {
                 let (from, to) = ([left, y - 5.5], [left + 26.0, y + 5.5]);
                 sample(from, to, inks.of(*verdict), dash(*verdict), pen);
                 let verdict = verdict.map_or("not settled", Verdict::as_str);
-                let photos = if *count == 1 { "photo" } else { "photos" };
-                format!("{verdict}: {count} {photos}")
+                format!("{verdict}: {}", counted(*count, "photo"))
             }
             Row::Camera => {
                 camera_mark([left + 13.0, y], inks, pen);

@@ -28,6 +28,12 @@ pub fn season_page(report: &SeasonReport<'_>) -> String {
         body.push(html_page::figure(&drawing));
     }
     body.push(heading(2, "Flights"));
+    if (report.rows.iter()).any(|row| shift(row, 50.0).or(shift(row, 80.0)).is_some()) {
+        body.push(paragraph(
+            "Sizes, and how far they are off the reference (P50 off %, P80 off %), are as measured, of all photos together. Those in psd.csv \
+             and psd.html of a flight are other ones: of the function that was fitted to the mean of its photos' curves.",
+        ));
+    }
     body.push(flights(report));
     if bad > 0 {
         body.push(heading(2, "Failed"));

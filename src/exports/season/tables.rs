@@ -13,6 +13,9 @@ pub(super) const PERCENTS: [f64; 3] = [20.0, 50.0, 80.0];
 /// What of sizes stands against a reference.
 const SHIFTS: [f64; 2] = [50.0, 80.0];
 
+/// What its sizes are: beside them lie those of a flight's psd.csv, which are of fitted functions.
+const AS_MEASURED: &str = "as measured, of all photos together";
+
 /// A line a flight. Numbers read back to the same f64; empty where there is none.
 ///
 /// # Errors
@@ -31,7 +34,7 @@ pub fn season_csv(report: &SeasonReport<'_>) -> Result<String, csv::Error> {
         }
     }
     heads.extend(SHIFTS.map(|percent| format!("p{percent}_off_reference_percent")));
-    heads.extend(["warnings", "error", "flight", "results"].map(str::to_owned));
+    heads.extend(["sizes_are", "warnings", "error", "flight", "results"].map(str::to_owned));
     let mut records = vec![heads];
     for row in &report.rows {
         let findings = row.findings.as_ref();
@@ -51,7 +54,13 @@ pub fn season_csv(report: &SeasonReport<'_>) -> Result<String, csv::Error> {
         record.extend(SHIFTS.map(|percent| number(shift(row, percent))));
         let warnings = findings.map_or_else(String::new, |of| of.warnings.len().to_string());
         let error = row.error.clone().unwrap_or_default();
-        record.extend([warnings, error, row.flight.clone(), row.results.clone()]);
+        let mut sizes = PERCENTS.iter().map(|percent| row.size(*percent));
+        let sizes_are = match sizes.any(|size| size.is_some()) {
+            true => AS_MEASURED.to_owned(),
+            false => String::new(),
+        };
+        let (flight, results) = (row.flight.clone(), row.results.clone());
+        record.extend([sizes_are, warnings, error, flight, results]);
         records.push(record);
     }
     csv_of(records)

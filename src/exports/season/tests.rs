@@ -73,6 +73,12 @@ fn the_table_has_every_flight() {
         ("7".into(), "2".into(), "0".into())
     );
     assert_eq!(cell(0, "p50_off_reference_percent"), "-3.25");
+    // Beside a flight's psd.csv, whose sizes are others.
+    assert_eq!(cell(0, "sizes_are"), "as measured, of all photos together");
+    assert_eq!(
+        (cell(2, "sizes_are"), cell(3, "sizes_are")),
+        (String::new(), String::new())
+    );
     assert_eq!(
         (cell(2, "state"), cell(2, "photos"), cell(2, "p50_cm")),
         ("failed".into(), String::new(), String::new())
@@ -155,10 +161,17 @@ fn the_page_shows_the_trend() {
     assert!((size(middles[1][1], shift) - 16.0).abs() < 0.1);
     assert!(middles[0][0] < middles[1][0]);
 
+    let said = "are as measured, of all photos together. Those in psd.csv";
+    assert!(page.contains(said));
+
     let mut none = report();
     none.rows.truncate(0);
     none.rows.push(row("D", None, None));
-    assert!(!season_page(&none).contains("<svg"));
+    if let Some(findings) = &mut none.rows[0].findings {
+        findings.shifts.clear();
+    }
+    let none = season_page(&none);
+    assert!(!none.contains("<svg") && !none.contains(said));
 }
 
 #[test]

@@ -1,14 +1,15 @@
 //! A comparison as CSV: one table that programs and spreadsheets read, whose column `part` says what a line is of.
 
-use crate::fragmentation::{Comparison, MeasuredNorm};
+use crate::fragmentation::{Comparison, MeasuredNorm, MethodCurve};
 
 /// Its columns. UNIT is that of the sizes, ENVELOPE half the envelope's width. (The first two and the last three also stood about the
 /// first table of earlier versions: by them a file is known as one that may be written over, `files/marks.rs`.)
-const COLUMNS: [&str; 27] = [
+const COLUMNS: [&str; 28] = [
     "method",
     "size_UNIT",
     "part",
     "percentile",
+    "fitted_function",
     "over",
     "reference_size_UNIT",
     "shift_percent",
@@ -39,8 +40,9 @@ type Line = Vec<(&'static str, String)>;
 
 /// The lines of its parts, one part after another: `mean` of every method by size, the reference's first; `error` by method and size;
 /// `percentile` and `norm` by method; `improvement` of a method over every other one. `interpolated`: not measured at this size, but taken
-/// from those beside it. The norm comes once over all of the reference's function and once where both were measured. What is not known is
-/// empty; numbers read back to the same f64.
+/// from those beside it. `fitted_function`: what the sizes of percentiles, their shifts and the norms are of, which are not as measured. The
+/// norm comes once over all of the reference's function and once where both were measured. What is not known is empty; numbers read back to
+/// the same f64.
 ///
 /// # Errors
 /// Where memory runs out.
@@ -121,6 +123,7 @@ fn percentiles(comparison: &Comparison) -> Vec<Line> {
                 ("method", method.curve.method.clone()),
                 ("size_UNIT", percentile.size.to_string()),
                 ("percentile", percentile.percent.to_string()),
+                ("fitted_function", function(&method.curve)),
                 ("reference_size_UNIT", percentile.reference.to_string()),
                 ("shift_percent", percentile.shift_percent.to_string()),
                 ("envelope_low_UNIT", low.to_string()),
@@ -139,6 +142,7 @@ fn norms(comparison: &Comparison) -> Vec<Line> {
             |value: fn(&MeasuredNorm) -> f64| number(method.measured_norm.as_ref().map(value));
         vec![
             ("method", method.curve.method.clone()),
+            ("fitted_function", function(&method.curve)),
             ("rms_difference", norm.rms_difference.to_string()),
             ("relative_norm_percent", norm.relative_percent.to_string()),
             ("measured_from_UNIT", measured(|of| of.from)),
@@ -156,6 +160,11 @@ fn norms(comparison: &Comparison) -> Vec<Line> {
         ]
     });
     lines.collect()
+}
+
+/// The reference's is the same.
+fn function(curve: &MethodCurve) -> String {
+    curve.fit.model.key().to_owned()
 }
 
 fn improvements(comparison: &Comparison) -> Vec<Line> {
@@ -221,12 +230,12 @@ mod tests {
             ),
             (
                 10,
-                "method point cloud, size_mm 36, part percentile, percentile 50, reference_size_mm 40, shift_percent -10, \
-                 envelope_low_mm 28, envelope_high_mm 52, within_30_percent true",
+                "method point cloud, size_mm 36, part percentile, percentile 50, fitted_function swebrec, reference_size_mm 40, \
+                 shift_percent -10, envelope_low_mm 28, envelope_high_mm 52, within_30_percent true",
             ),
             (
                 12,
-                "method point cloud, part norm, rms_difference 4, relative_norm_percent 9.4, measured_from_mm 10, measured_to_mm 100, \
+                "method point cloud, part norm, fitted_function swebrec, rms_difference 4, relative_norm_percent 9.4, measured_from_mm 10, measured_to_mm 100, \
                  measured_rms_difference 3, measured_relative_norm_percent 5, mean_shift_percent -10",
             ),
             (

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use crate::fragmentation::{
     Comparison, MethodComparison, MethodCurve, PERCENT_ERROR, SCALE_WARNING,
 };
+use crate::numbers::counted;
 use crate::size_distributions::fit::NOT_DETERMINED;
 use crate::size_distributions::text_table::{aligned, or_dash, signed, significant, trimmed};
 use crate::size_distributions::{comparison_notes, star};
@@ -47,10 +48,7 @@ fn curve_text(text: &mut String, curve: &MethodCurve, comparison: &Comparison, r
             false => format!("{} {NOT_DETERMINED}", parameter.name),
         })
         .collect();
-    let trials = match curve.trials.len() {
-        1 => "1 trial".to_owned(),
-        count => format!("{count} trials"),
-    };
+    let trials = counted(curve.trials.len(), "trial");
     let _ = writeln!(
         text,
         "{}{role}: {trials}; {}: {}; R squared {}, RMSE {} percentage points",

@@ -33,6 +33,7 @@
 //! - For the text itself see [`Table`].
 
 mod curves;
+mod label_columns;
 mod layout;
 mod names;
 mod names_of_sizes;

@@ -13,15 +13,17 @@
 //!   table shows that the other sign is the decimal one, and so does their column or the number itself.
 
 mod cell_number;
+mod column_signs;
 mod encoding;
+mod number_repairs;
+mod numbers;
 mod records;
 
-use std::borrow::Cow;
 use std::path::Path;
 
 use csv::StringRecord;
 
-use self::cell_number::{last_digit, number_text, other_sign, without_separators};
+use self::column_signs::ColumnSigns;
 use self::encoding::decoded;
 use self::records::{blank_records, counted_lines, separated_records, separator};
 use crate::fault::Fault;
@@ -30,6 +32,7 @@ use crate::text::fields::shown;
 
 pub use self::cell_number::may_be_thousands;
 pub(crate) use self::cell_number::{number_and_unit, split_number};
+pub use self::number_repairs::NumberRepairs;
 
 /// Larger files are no tables that people made or looked at.
 const LARGEST: usize = 16 << 20;
@@ -57,47 +60,6 @@ pub struct Table {
     columns: Vec<ColumnSigns>,
 }
 
-/// What the numbers of a column show of its points and commas.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-struct ColumnSigns {
-    /// As of the table, of this column alone.
-    decimal_comma: bool,
-    decimal_point: bool,
-    /// Whether there are whole numbers of 100 or more.
-    hundreds: bool,
-}
-
-impl ColumnSigns {
-    /// Looks for a comma or point that can only be decimal, and for hundreds.
-    fn look_at(&mut self, cell: &str) {
-        let (number, _) = number_text(cell);
-        self.hundreds |= number.parse::<u32>().is_ok_and(|number| number >= 100);
-        let signs = [',', '.'].map(|sign| number.matches(sign).count());
-        if signs[0] + signs[1] == 1 && !may_be_thousands(&number) {
-            self.decimal_comma |= signs[0] == 1;
-            self.decimal_point |= signs[1] == 1;
-        }
-        // Behind thousands: "1.250,0".
-        if signs[0] > 0
-            && signs[1] > 0
-            && let Some((separator, _)) = without_separators(&number)
-        {
-            let decimal = other_sign(separator);
-            self.decimal_comma |= decimal == ',';
-            self.decimal_point |= decimal == '.';
-        }
-    }
-
-    /// Whether its own numbers say that this sign parts thousands: another column may be written otherwise.
-    fn are_parted_by(self, separator: char) -> bool {
-        let is_other_decimal = match separator {
-            '.' => self.decimal_comma,
-            _ => self.decimal_point,
-        };
-        is_other_decimal || self.hundreds
-    }
-}
-
 /// A line of a table, behind its header.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
@@ -120,81 +82,6 @@ impl Row {
     /// Whether it has none.
     pub fn is_empty(&self) -> bool {
         self.cells.is_empty()
-    }
-}
-
-/// What was mended in numbers, to be said.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct NumberRepairs {
-    decimal_commas: usize,
-    first_line: u64,
-    /// How many had thousands that stand apart; of the first the line, and as what it was read.
-    apart: usize,
-    first_apart: (u64, String),
-    /// The same of those whose thousands were parted by points or commas.
-    parted: usize,
-    first_parted: (u64, String),
-}
-
-impl NumberRepairs {
-    /// One sentence for each kind of repair.
-    pub fn warnings(&self) -> Vec<String> {
-        let numbers = |count: usize| if count == 1 { "number" } else { "numbers" };
-        let commas = (self.decimal_commas > 0).then(|| {
-            format!(
-                "decimal commas are read as decimal points ({} {}, first on line {})",
-                self.decimal_commas,
-                numbers(self.decimal_commas),
-                self.first_line
-            )
-        });
-        let apart = (self.apart > 0).then(|| {
-            let (line, how) = &self.first_apart;
-            format!(
-                "thousands that stand apart are read as one number: {how} ({} {}, first on line {line})",
-                self.apart,
-                numbers(self.apart)
-            )
-        });
-        let parted = (self.parted > 0).then(|| {
-            let (line, how) = &self.first_parted;
-            format!(
-                "points or commas between thousands are left out, for the table's decimal sign is the other one: {how} ({} {}, \
-                 first on line {line})",
-                self.parted,
-                numbers(self.parted)
-            )
-        });
-        commas.into_iter().chain(apart).chain(parted).collect()
-    }
-
-    /// Whether some number had a decimal comma.
-    pub(crate) fn has_decimal_commas(&self) -> bool {
-        self.decimal_commas > 0
-    }
-
-    /// Notes a decimal comma on this line.
-    pub(crate) fn decimal_comma(&mut self, line: u64) {
-        if self.decimal_commas == 0 {
-            self.first_line = line;
-        }
-        self.decimal_commas += 1;
-    }
-
-    /// Notes a cell, or the name of a column, on this line whose thousands stand apart, and what was read.
-    pub(crate) fn thousands_apart(&mut self, line: u64, cell: &str, number: f64) {
-        if self.apart == 0 {
-            self.first_apart = (line, format!("'{}' as {number}", shown(cell)));
-        }
-        self.apart += 1;
-    }
-
-    /// Notes a cell on this line whose thousands were parted by points or commas, and what was read.
-    fn thousands_parted(&mut self, line: u64, cell: &str, number: f64) {
-        if self.parted == 0 {
-            self.first_parted = (line, format!("'{}' as {number}", shown(cell)));
-        }
-        self.parted += 1;
     }
 }
 
@@ -373,170 +260,12 @@ impl Table {
         names.join(", ")
     }
 
-    /// The finite number in a column; `None` where the cell is empty. A decimal comma is read as a
-    /// point, and noted in `repairs`.
-    ///
-    /// # Errors
-    /// With line, column and value, where it is no number, or one whose comma or point may as well
-    /// separate thousands.
-    pub fn number(
-        &self,
-        row: &Row,
-        column: usize,
-        repairs: &mut NumberRepairs,
-    ) -> Result<Option<f64>, Fault> {
-        match self.number_and_rest(row, column, repairs)? {
-            Some((_, rest)) if !rest.is_empty() => Err(self.no_number(row, column)),
-            found => Ok(found.map(|(number, _)| number)),
-        }
-    }
-
-    /// As [`Table::number`], with what follows the number in its cell: a unit or a percent sign.
-    ///
-    /// # Errors
-    /// As [`Table::number`].
-    pub fn number_and_rest<'a>(
-        &self,
-        row: &'a Row,
-        column: usize,
-        repairs: &mut NumberRepairs,
-    ) -> Result<Option<(f64, &'a str)>, Fault> {
-        let cell = row.cell(column);
-        if cell.is_empty() {
-            return Ok(None);
-        }
-        let (number, rest) = number_text(cell);
-        let stands_apart = matches!(number, Cow::Owned(_));
-        let number = &*number;
-        let fault = |what: &str, remedy: &str| {
-            let name = self.name(column);
-            let what = format!("column {name}: '{}' {what}", shown(cell));
-            Err(Fault::at(row.line, what, remedy))
-        };
-        if let Some(whole) = self.without_thousands(number, column) {
-            let parsed = whole.replace(',', ".").parse::<f64>().ok();
-            let Some(parsed) = parsed.filter(|number| number.is_finite()) else {
-                return Err(self.no_number(row, column));
-            };
-            if whole.contains(',') {
-                repairs.decimal_comma(row.line);
-            }
-            repairs.thousands_parted(row.line, cell, parsed);
-            return Ok(Some((parsed, rest.trim_start())));
-        }
-        let has_hundreds = (self.columns.get(column)).is_some_and(|signs| signs.hundreds);
-        let plain = "write decimals with a point, and nothing between thousands";
-        let ambiguous = "may have a decimal sign or a separator of thousands";
-        let parsed = match (number.matches(',').count(), number.matches('.').count()) {
-            (0, 1)
-                if may_be_thousands(number)
-                    && (self.decimal_comma || self.points_may_part && has_hundreds) =>
-            {
-                return fault(ambiguous, plain);
-            }
-            (0, 0 | 1) => number.parse::<f64>(),
-            (1, 0) if may_be_thousands(number) && (self.decimal_point || !self.decimal_comma) => {
-                return fault(ambiguous, plain);
-            }
-            (1, 0) => {
-                repairs.decimal_comma(row.line);
-                number.replace(',', ".").parse::<f64>()
-            }
-            _ => return fault("has separators of thousands", plain),
-        };
-        match parsed {
-            Ok(number) if number.is_finite() => {
-                if stands_apart {
-                    repairs.thousands_apart(row.line, cell, number);
-                }
-                Ok(Some((number, rest.trim_start())))
-            }
-            Ok(_) => fault("is not finite", "correct it"),
-            Err(_) => Err(self.no_number(row, column)),
-        }
-    }
-
-    /// A number without what parts its thousands, where the table says that the other sign is the decimal one, and this one never is,
-    /// and the number itself or its column says so, too: metres with points may stand beside percents with commas.
-    fn without_thousands(&self, number: &str, column: usize) -> Option<String> {
-        let (separator, whole) = without_separators(number)?;
-        let says_so = || {
-            let signs = self.columns.get(column);
-            signs.is_some_and(|signs| signs.are_parted_by(separator))
-        };
-        let is_parted = self.is_not_decimal(separator) && (!may_be_thousands(number) || says_so());
-        is_parted.then_some(whole)
-    }
-
-    /// Whether the cells show that the other sign is the decimal one, and this one never is.
-    fn is_not_decimal(&self, sign: char) -> bool {
-        match sign {
-            '.' => self.decimal_comma && !self.decimal_point,
-            _ => self.decimal_point && !self.decimal_comma,
-        }
-    }
-
-    /// Refuses numbers in the names of these columns that all may have thousands, parted by the sign that in the cells is not the
-    /// decimal one: read as decimals they were a thousandth.
-    ///
-    /// # Errors
-    /// With the first of them.
-    pub(crate) fn check_numbers_in_names(&self, columns: &[usize]) -> Result<(), Fault> {
-        let others = ['.', ','].into_iter();
-        for sign in others.filter(|sign| self.is_not_decimal(*sign)) {
-            let names = columns.iter().filter_map(|column| self.header.get(*column));
-            let mut with = names.filter(|name| number_text(name.trim()).0.contains(sign));
-            let Some(first) = with.next() else { continue };
-            let is_doubtful = |name: &String| may_be_thousands(&number_text(name.trim()).0);
-            if is_doubtful(first) && with.all(is_doubtful) {
-                return Err(Fault::at(
-                    self.header_line,
-                    format!(
-                        "column '{}' may have a decimal sign or a separator of thousands",
-                        shown(first)
-                    ),
-                    "write nothing between thousands, and decimals as the cells do",
-                ));
-            }
-        }
-        Ok(())
-    }
-
-    /// What one of the last digit shown of a cell's number is: 0.1 of "12.3", 1 of "58". `None` where it is no plain number.
-    pub(crate) fn last_digit(&self, row: &Row, column: usize) -> Option<f64> {
-        let cell = row.cell(column);
-        let (number, _) = number_text(cell);
-        match self.without_thousands(&number, column) {
-            Some(whole) => last_digit(&whole),
-            None => last_digit(cell),
-        }
-    }
-
-    /// The fault of a cell that is no number.
-    pub fn no_number(&self, row: &Row, column: usize) -> Fault {
-        let cell = shown(row.cell(column));
-        let what = format!("column {}: '{cell}' is not a number", self.name(column));
-        Fault::at(row.line, what, format!("correct it{OR_LEAVE_OUT}"))
-    }
-
     /// What a column is called in messages.
     pub fn name(&self, column: usize) -> String {
         match self.header.get(column) {
             Some(name) if !name.is_empty() => shown(name),
             _ => format!("number {}", column + 1),
         }
-    }
-
-    /// Looks for numbers whose comma or point can only be decimal.
-    fn look_for_decimal_signs(&mut self) {
-        self.columns = vec![ColumnSigns::default(); self.header.len()];
-        for row in &self.rows {
-            for (signs, cell) in self.columns.iter_mut().zip(&row.cells) {
-                signs.look_at(cell);
-            }
-        }
-        self.decimal_comma = self.columns.iter().any(|signs| signs.decimal_comma);
-        self.decimal_point = self.columns.iter().any(|signs| signs.decimal_point);
     }
 }
 
