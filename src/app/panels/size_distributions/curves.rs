@@ -12,6 +12,9 @@ use crate::size_distributions::drawing::MethodDrawing;
 use crate::size_distributions::{Computed, DistributionCommand};
 use crate::state::State;
 
+/// What stands behind the method that the others are held against.
+const REFERENCE: &str = "reference";
+
 /// A trial of more photos is closed at first.
 const FEW: usize = 4;
 
@@ -29,9 +32,10 @@ pub(super) fn curves(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comman
         let is_reference = computed.analysis.reference.as_ref() == Some(method);
         let head = |ui: &mut egui::Ui, commands: &mut Vec<Command>| {
             swatch(drawing, ui);
-            check(state, method, method, &curves, ui, commands);
-            if is_reference {
-                ui.weak("reference");
+            let behind = is_reference.then_some(REFERENCE);
+            check(state, [method, method], &curves, behind, ui, commands);
+            if let Some(text) = behind {
+                ui.weak(text);
             }
             weights(&curves, ui);
         };
@@ -78,7 +82,7 @@ fn trials(
         };
         let name = format!("{method} / {text}");
         let head = |ui: &mut egui::Ui, commands: &mut Vec<Command>| {
-            check(state, &name, text, &photos, ui, commands);
+            check(state, [&name, text], &photos, None, ui, commands);
             weights(&photos, ui);
         };
         if !photos.iter().any(|photo| !photo.labels.photo.is_empty()) {
@@ -92,7 +96,8 @@ fn trials(
             for photo in &photos {
                 ui.horizontal(|ui| {
                     let name = photo.labels.to_string();
-                    check(state, &name, &photo.labels.photo, &[photo], ui, commands);
+                    let names = [name.as_str(), &photo.labels.photo];
+                    check(state, names, &[photo], None, ui, commands);
                     weights(&[photo], ui);
                 });
             }
@@ -115,12 +120,13 @@ fn swatch(drawing: &MethodDrawing, ui: &mut egui::Ui) {
     ui.painter().rect_filled(place, 3.0, color);
 }
 
-/// The box that draws these curves, or not.
+/// The box that draws these curves, or not. `name` is its whole name and what stands beside it; `behind` comes after it in its row,
+/// before the weight, and has its room.
 fn check(
     state: &State,
-    name: &str,
-    text: &str,
+    [name, text]: [&str; 2],
     curves: &[&LabelledDistribution],
+    behind: Option<&str>,
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
 ) {
@@ -131,10 +137,13 @@ fn check(
     let mixed = shown > 0 && !all;
     let font = egui::TextStyle::Button.resolve(ui.style());
     let spacing = ui.spacing();
-    // What else is in the row: the box itself, "reference", the weight.
-    let weight = weight_of(curves).map_or(0.0, |weight| text_width(ui, &weight));
-    let others = spacing.icon_width + spacing.icon_spacing + 90.0 + weight;
-    let width = (ui.available_width() - others).max(40.0);
+    let gap = spacing.item_spacing.x;
+    // What else is in the row: the box itself, what comes behind, the weight.
+    let of_box = spacing.icon_width + spacing.icon_spacing + 2.0 * spacing.button_padding.x;
+    let weight = weight_of(curves);
+    let others = behind.into_iter().chain(weight.as_deref());
+    let others: f32 = others.map(|text| text_width(ui, text) + gap).sum();
+    let width = (ui.available_width() - of_box - others).max(40.0);
     let shown = names::fitted(ui, text, &font, width);
     let is_cut = *shown != *text;
     let response = ui.add(egui::Checkbox::new(&mut all, &*shown).indeterminate(mixed));

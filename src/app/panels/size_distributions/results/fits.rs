@@ -50,7 +50,7 @@ pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Co
     for percent in PERCENTILES {
         percentiles.column(
             format!("P{percent}"),
-            format!("{percent} % of the mass passes it"),
+            format!("{percent} % of the mass passes it, by the fitted function; read off the curve as measured, as on the page Fragments, it is a little beside"),
         );
     }
     for FittedCurve {
