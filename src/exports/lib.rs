@@ -57,8 +57,8 @@ pub use masks::{
     CocoFile, CvatFile, OUTLINE_ENDINGS, fragments_geojson, labelme_json, labels_tiff,
 };
 pub use measured::{
-    MeasuredUnit, PointsReport, ProfileReport, VolumeReport, is_of_a_stone, percent, points_csv,
-    points_table, profile_csv, profile_json, profile_table, profile_warnings, volume_csv,
+    MeasuredUnit, PointsReport, ProfileReport, VolumeReport, percent, points_csv, points_table,
+    profile_csv, profile_json, profile_table, profile_warnings, stone_sides, volume_csv,
     volume_json, volume_table, volume_warnings,
 };
 pub use missions::{

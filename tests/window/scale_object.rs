@@ -4,13 +4,17 @@ use std::fs;
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Pos2, Rect};
+use egui_kittest::kittest::NodeT;
+use fragscale::app::Command;
 use fragscale::flight::ScaleObject;
 use fragscale::scale::{ImageKind, ScaleObjectKind, Traced};
+use fragscale::units::LengthUnit;
 use glam::{DVec2, DVec3};
 use tempfile::TempDir;
 
 use crate::desk::{Desk, copy, copy_files, flight};
 
+/// In the world's unit; the window begins with centimetres.
 const DIAMETER: f64 = 0.06;
 
 /// The sample to change, with its photos; the first photo selected.
@@ -94,7 +98,7 @@ fn tracing_begins_by_one_click_behind_the_size() {
     type_size(&mut desk, "none");
     desk.click(Role::Button, "Trace sphere");
     assert!(desk.open().objects.tracing.is_none());
-    type_size(&mut desk, "0.06");
+    type_size(&mut desk, "6");
     desk.click(Role::Button, "Trace sphere");
     assert!(desk.open().objects.tracing.is_some());
     let size = desk.open().trace_size(ScaleObjectKind::Sphere);
@@ -112,7 +116,7 @@ fn objects(desk: &Desk) -> Vec<ScaleObject> {
 
 /// Marks a sphere in eight clicks and finishes with Enter.
 fn trace_sphere(desk: &mut Desk) {
-    desk.fill("Diameter of the next sphere", "0.06");
+    desk.fill("Diameter of the next sphere", "6");
     desk.click(Role::Button, "Trace sphere");
     for pixel in outline(desk, 8) {
         let at = on_screen(desk, pixel);
@@ -165,7 +169,7 @@ fn a_sphere_is_traced_by_clicks() {
 fn points_are_taken_back_moved_and_given_up() {
     let (_folder, mut desk) = sample();
     open_section(&mut desk);
-    desk.fill("Diameter of the next sphere", "0.06");
+    desk.fill("Diameter of the next sphere", "6");
     desk.click(Role::Button, "Trace sphere");
     let places: Vec<Pos2> = outline(&desk, 6)
         .into_iter()
@@ -239,7 +243,7 @@ fn drag(desk: &mut Desk, from: Pos2, to: Pos2) {
 fn a_click_on_the_first_point_closes_the_outline() {
     let (_folder, mut desk) = sample();
     open_section(&mut desk);
-    desk.fill("Diameter of the next sphere", "0,06");
+    desk.fill("Diameter of the next sphere", "6,0");
     desk.click(Role::Button, "Trace sphere");
     let places: Vec<Pos2> = outline(&desk, 5)
         .into_iter()
@@ -266,7 +270,7 @@ fn a_click_on_the_first_point_closes_the_outline() {
 fn a_bar_is_two_clicks() {
     let (_folder, mut desk) = sample();
     open_section(&mut desk);
-    desk.fill("Length of the next bar", "0.3");
+    desk.fill("Length of the next bar", "30");
     desk.click(Role::Button, "Trace bar");
     for pixel in [DVec2::new(400.0, 300.0), DVec2::new(900.0, 420.0)] {
         let at = on_screen(&desk, pixel);
@@ -299,7 +303,7 @@ fn size_mask_and_deleting_are_changes_of_the_flight() {
     };
     let first = scale(&desk);
     // Twice as large is twice as far, at half the scale.
-    desk.fill("Size of sphere 1", "0.12");
+    desk.fill("Size of sphere 1", "12");
     assert!((scale(&desk) * 2.0 / first - 1.0).abs() < 1e-9);
     desk.click(Role::CheckBox, "Mask sphere 1 in export");
     assert!(!objects(&desk)[0].mask);
@@ -319,6 +323,33 @@ fn size_mask_and_deleting_are_changes_of_the_flight() {
     assert!(!again.open().objects.compared.is_empty());
     desk.click(Role::Button, "Delete sphere 1");
     assert!(objects(&desk).is_empty() && desk.open().is_changed());
+}
+
+/// It is shown and typed in the unit that is chosen in the window, and kept in that of the flight's world.
+#[test]
+fn a_size_is_in_the_unit_of_the_window() {
+    let (folder, mut desk) = sample();
+    open_section(&mut desk);
+    trace_sphere(&mut desk);
+    for (unit, size) in [
+        (LengthUnit::Centimetre, "6"),
+        (LengthUnit::Millimetre, "60"),
+        (LengthUnit::Metre, "0.06"),
+        (LengthUnit::Inch, "2.362204724"),
+    ] {
+        desk.harness.state_mut().apply(Command::Unit(unit));
+        desk.settle();
+        for name in ["Diameter of the next sphere", "Size of sphere 1"] {
+            let field = desk.node(Role::TextInput, name);
+            let shown = field.accesskit_node().value();
+            assert_eq!(shown.as_deref(), Some(size), "{name} in {unit}");
+        }
+    }
+    desk.fill("Size of sphere 1", "3");
+    assert_eq!(objects(&desk)[0].size, 0.0762);
+    desk.press(Modifiers::COMMAND, Key::S);
+    let text = fs::read_to_string(folder.path().join("flight.toml")).expect("the flight");
+    assert!(text.contains("size = 0.0762"), "{text}");
 }
 
 /// Of a photo as shot the clicks are kept as they are; of an undistorted one they go through the lens.

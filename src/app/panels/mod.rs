@@ -77,6 +77,16 @@ fn shown_per(state: &State, open: &OpenFlight) -> (String, f64) {
     }
 }
 
+/// What lengths are shown and typed in, and how many times one of the world that is. Of a model whose unit nobody states, its own.
+fn shown_lengths(state: &State, open: &OpenFlight) -> (&'static str, f64) {
+    let parts = open.flight().parts();
+    let unit = state.preferences.unit();
+    match parts.unit_known {
+        true => (unit.symbol(), parts.unit.in_units_of(unit)),
+        false => (parts.unit_of_lengths(), 1.0),
+    }
+}
+
 /// The right panel: its tabs and the one that is shown.
 pub fn right_panel(
     state: &State,

@@ -7,7 +7,7 @@ mod volume;
 
 pub use points::{PointsReport, points_csv, points_table};
 pub use profile::{
-    ProfileReport, is_of_a_stone, profile_csv, profile_json, profile_table, profile_warnings,
+    ProfileReport, profile_csv, profile_json, profile_table, profile_warnings, stone_sides,
 };
 pub use volume::{VolumeReport, volume_csv, volume_json, volume_table, volume_warnings};
 

@@ -51,7 +51,8 @@ pub fn profile_table(report: &ProfileReport<'_>) -> String {
         rows.push(("lowest", place(lowest)));
     }
     let faces = profile.faces();
-    for (side, face) in SIDES.into_iter().zip(&faces) {
+    let stones = stone_sides(&faces, profile);
+    for ((side, face), is_of_a_stone) in SIDES.into_iter().zip(&faces).zip(stones) {
         let Some(face) = face else {
             continue;
         };
@@ -64,7 +65,7 @@ pub fn profile_table(report: &ProfileReport<'_>) -> String {
             _ => ["toe after", "angle of repose after", "crest to toe after"],
         };
         rows.push((toe, place(&face.toe)));
-        rows.push((angle, repose(face, profile, &unit)));
+        rows.push((angle, repose(face, is_of_a_stone, &unit)));
         let height = coordinate(face.height());
         rows.push((
             overall,
@@ -92,22 +93,37 @@ const WALL: f64 = 10.0;
 /// the stones below it.
 const WALLS_FALL: f64 = 0.5;
 
-/// Whether the angle of repose of a face is that of a stone's side: of a short stretch of the profile that is much steeper than the
-/// face, or of a face that is low.
-pub fn is_of_a_stone(face: &Face, profile: &Profile) -> bool {
-    let stretch = |[from, to]: [f64; 2]| (to - from).abs();
-    let relief = (profile.lowest()).map_or(0.0, |lowest| face.crest.point.z - lowest.point.z);
-    let is_steep_all_over = (face.repose).is_some_and(|repose| repose - face.overall < WALL);
-    let is_wall = is_steep_all_over && face.height() >= WALLS_FALL * relief;
-    let is_short = |fitted| stretch(fitted) < LEAST_STRETCH * profile.length;
-    face.fitted.is_some_and(is_short) && !is_wall
+/// The part of the profile's relief that the other flank of a spike falls by, at least. Behind a wall's crest is a bench or a slope; a
+/// stone that lies on its edge is lower.
+const SPIKES_FALL: f64 = 0.25;
+
+/// Of each face of a profile whether its angle of repose is that of a stone's side: of a short stretch of the profile that is much
+/// steeper than the face, of a face that is low, or of a spike, which falls within as little on the other side of the crest.
+pub fn stone_sides(faces: &[Option<Face>; 2], profile: &Profile) -> [bool; 2] {
+    let [before, after] = faces;
+    [[before, after], [after, before]].map(|[face, other]| {
+        (face.as_ref()).is_some_and(|face| is_of_a_stone(face, other.as_ref(), profile))
+    })
 }
 
-fn repose(face: &Face, profile: &Profile, unit: &str) -> String {
+fn is_of_a_stone(face: &Face, other: Option<&Face>, profile: &Profile) -> bool {
+    let relief = (profile.lowest()).map_or(0.0, |lowest| face.crest.point.z - lowest.point.z);
+    let is_short = |face: &Face| {
+        let stretch = face.fitted.map(|[from, to]| (to - from).abs());
+        stretch.is_some_and(|stretch| stretch < LEAST_STRETCH * profile.length)
+    };
+    let is_spike =
+        other.is_some_and(|other| is_short(other) && other.height() >= SPIKES_FALL * relief);
+    let is_steep_all_over = (face.repose).is_some_and(|repose| repose - face.overall < WALL);
+    let is_wall = is_steep_all_over && face.height() >= WALLS_FALL * relief && !is_spike;
+    is_short(face) && !is_wall
+}
+
+fn repose(face: &Face, is_of_a_stone: bool, unit: &str) -> String {
     match (face.repose, face.fitted) {
         (Some(repose), Some([from, to])) => {
             let [from, to] = [from, to].map(coordinate);
-            let doubt = match is_of_a_stone(face, profile) {
+            let doubt = match is_of_a_stone {
                 true => ": a stone's side rather than a slope, the stretch is so short",
                 false => "",
             };
@@ -213,12 +229,37 @@ mod tests {
             [20.0, 0.0],
         ]);
         for (profile, is_stone) in [(&wall, false), (&stone, true)] {
-            let [Some(before), Some(after)] = profile.faces() else {
-                panic!("two faces");
-            };
+            let faces = profile.faces();
+            let before = faces[0].as_ref().expect("a face");
             assert!(before.repose.is_some_and(|repose| repose > 85.0));
-            assert_eq!(is_of_a_stone(&before, profile), is_stone);
-            assert!(!is_of_a_stone(&after, profile));
+            assert_eq!(stone_sides(&faces, profile), [is_stone, false]);
         }
+    }
+
+    /// Its left side is as steep all over as a wall and as high as all of the profile; its right one runs out.
+    #[test]
+    fn a_spike_is_a_stone_on_both_sides() {
+        let spike = through(&[
+            [0.0, 0.0],
+            [9.9, 0.0],
+            [10.0, 2.0],
+            [10.1, 1.0],
+            [10.9, 0.3],
+            [20.0, 0.0],
+        ]);
+        let faces = spike.faces();
+        assert!(faces.iter().all(Option::is_some));
+        assert_eq!(stone_sides(&faces, &spike), [true, true]);
+        // A stone on the edge of a wall is low: the wall stays one.
+        let on_edge = through(&[
+            [0.0, 0.0],
+            [9.9, 0.0],
+            [10.0, 10.0],
+            [10.1, 9.0],
+            [10.9, 8.5],
+            [20.0, 8.8],
+        ]);
+        let faces = on_edge.faces();
+        assert_eq!(stone_sides(&faces, &on_edge), [false, true]);
     }
 }

@@ -68,7 +68,17 @@ impl<R: BufRead> TextLines<R> {
             bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         }
         let bytes = bytes.strip_suffix(b"\n").unwrap_or(bytes);
-        let bytes = bytes.strip_suffix(b"\r").unwrap_or(bytes);
+        let last = bytes.iter().rposition(|byte| *byte != b'\r');
+        let bytes = bytes
+            .get(..last.map_or(0, |last| last + 1))
+            .unwrap_or(bytes);
+        if bytes.contains(&b'\r') {
+            return Err(Fault::at(
+                self.line,
+                "its lines end with CR alone, as on Macs of old",
+                "save it with lines that end with LF, or CR and LF",
+            ));
+        }
         match std::str::from_utf8(bytes) {
             Ok(text) => Ok(Some(text)),
             Err(_) => Err(Fault::at(
@@ -97,6 +107,17 @@ mod tests {
         assert_eq!(lines.next_line(), Ok(Some("c")));
         assert_eq!((lines.line(), lines.bytes()), (3, 10));
         assert_eq!(lines.next_line(), Ok(None));
+    }
+
+    /// All of them would be one line, of which a table takes the first columns.
+    #[test]
+    fn lines_that_end_with_cr_alone_are_refused() {
+        let mut lines = TextLines::new(&b"1 2 3\r4 5 6\r"[..]);
+        let fault = lines.next_line().unwrap_err();
+        assert!(fault.line == Some(1) && fault.what.contains("CR alone"));
+        let mut lines = TextLines::new(&b"1 2 3\r\r\n4 5 6\r\r\n"[..]);
+        assert_eq!(lines.next_line(), Ok(Some("1 2 3")));
+        assert_eq!(lines.next_line(), Ok(Some("4 5 6")));
     }
 
     #[test]

@@ -100,6 +100,8 @@ pub(super) fn recording_info(recording: &Recording) -> Value {
                 .map(|(name, pose)| photo_value(name, None, pose));
             json!({
                 "kind": "poses",
+                "crs": null,
+                "over_time": true,
                 "photos": photos.collect::<Vec<_>>(),
                 "warnings": warnings,
             })

@@ -34,6 +34,8 @@ pub(super) fn trajectory_info(trajectory: &Trajectory) -> Value {
     warnings.extend(trajectory.warnings.iter().map(String::as_str));
     json!({
         "kind": "poses",
+        "crs": null,
+        "over_time": true,
         "photos": photos.collect::<Vec<_>>(),
         "warnings": warnings,
     })

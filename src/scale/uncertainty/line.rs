@@ -86,9 +86,11 @@ impl LineErrors {
                 // The end of a line through independent values has four times the variance of their mean.
                 let seen = 2.0 * roughness / counted.sqrt();
                 let of_unseen = unseen.spread() * roughness;
-                // Each point has its stated error, and the line is the mean of many.
+                // Each point has its stated error, and the line is the mean of many. Of few, or of a mesh, whose points tell nothing:
+                // no more than where all are off by the same.
                 let depth = 1.0 / plane.z.abs().max(f64::MIN_POSITIVE);
-                let stated = 2.0 * errors.surface.unwrap_or(0.0) / depth / counted.sqrt();
+                let of_all = (2.0 / counted.sqrt()).min(1.0);
+                let stated = errors.surface.unwrap_or(0.0) / depth * of_all;
                 let parts = [
                     seen,
                     of_unseen,

@@ -18,10 +18,7 @@ pub(super) fn number_field(
     value: f64,
     suffix: &str,
 ) -> Option<f64> {
-    let mut text = crate::numbers::significant_digits(value, 10);
-    if text.contains('.') {
-        text = text.trim_end_matches('0').trim_end_matches('.').to_owned();
-    }
+    let text = in_field(value);
     // In a row that is wrapped the unit stands beside its number, not at the begin of the next row.
     let unit = super::rows::text_width(ui, suffix) + ui.spacing().item_spacing.x;
     let wide = NUMBER + 2.0 * ui.spacing().button_padding.x + unit;
@@ -34,6 +31,15 @@ pub(super) fn number_field(
         ui.label(suffix);
     }
     settled(ui, label, typed).filter(|number| *number != value)
+}
+
+/// A number as it stands in a field.
+pub(super) fn in_field(value: f64) -> String {
+    let text = crate::numbers::significant_digits(value, 10);
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
 }
 
 /// The number that was typed into the field of that label. Why it was not taken stays beside the field until

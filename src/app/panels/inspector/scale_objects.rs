@@ -7,10 +7,10 @@ use crate::names::unbroken;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::tracing::{Trace, Tracing};
-use crate::panels::field::{being_typed, number_field, number_of, settled, text_field};
+use crate::panels::field::{being_typed, in_field, number_field, number_of, settled, text_field};
 use crate::panels::rows::Rows;
-use crate::panels::shown_per;
 use crate::panels::verdict::{or_dash, verdict_color};
+use crate::panels::{shown_lengths, shown_per};
 use crate::scale::{ScaleObjectKind, Traced};
 use crate::state::State;
 
@@ -22,6 +22,15 @@ const VAGUE: f64 = 0.02;
 
 /// Points that are further off the outline than this, pixels, are on something else.
 const FAR_OFF_PX: f64 = 2.0;
+
+/// What is said of the field of a size.
+const SIZE: &str = "As it was measured; flight.toml keeps it in the unit of the flight's world";
+
+/// A size in the world's unit, of which `factor` times as many are shown: with twelve digits, so that 3 in are written as 0.0762 m.
+fn in_world(shown: f64, factor: f64) -> f64 {
+    let world = shown / factor;
+    format!("{world:.11e}").parse().unwrap_or(world)
+}
 
 /// Draws the section.
 pub(super) fn scale_objects(
@@ -78,14 +87,14 @@ fn begin(
         let button = button.on_disabled_hover_text("Type its size first");
         let begins = button.on_hover_text(action.hover).clicked();
         ui.label(name);
-        let text = size.map_or_else(String::new, |size| size.to_string());
-        let hover = "As it was measured, in the unit of the flight's world";
-        let typed = text_field(ui, label, hover, &text, 60.0);
-        ui.label(open.flight().parts().unit_of_lengths());
+        let (unit, factor) = shown_lengths(state, open);
+        let text = size.map_or_else(String::new, |size| in_field(size * factor));
+        let typed = text_field(ui, label, SIZE, &text, 60.0);
+        ui.label(unit);
         let is_left = typed.is_some();
         let size = settled(ui, label, typed);
         if let Some(size) = size {
-            commands.push(Command::Trace(Trace::Size(kind, size)));
+            commands.push(Command::Trace(Trace::Size(kind, in_world(size, factor))));
         }
         // Not by the size of before where another one was typed that is none.
         if begins && (!is_left || size.is_some_and(is_size)) {
@@ -167,16 +176,16 @@ fn card(
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
 ) {
-    let world = open.flight().parts().unit_of_lengths();
+    let (unit, factor) = shown_lengths(state, open);
     let title = format!("{} {number}", object.kind.as_str());
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             ui.strong(format!("{number}: {}", object.kind.as_str()));
             ui.label(object.kind.size_name());
             let label = format!("Size of {title}");
-            let hover = "As it was measured, in the unit of the flight's world";
-            let typed = number_field(ui, &label, hover, object.size, world);
+            let typed = number_field(ui, &label, SIZE, object.size * factor, unit);
             if let Some(size) = typed.filter(|&size| size > 0.0) {
+                let size = in_world(size, factor);
                 commands.extend(open.change_object(place, |object| object.size = size));
             }
         });
@@ -312,7 +321,9 @@ fn numbers(
         }
         Ok(Traced::Bar(_)) => {
             let length = place.length_on_surface;
-            let text = length.map(|length| format!("{} {world}", significant_digits(length, 5)));
+            let (unit, factor) = shown_lengths(state, open);
+            let length = length.map(|length| significant_digits(length * factor, 5));
+            let text = length.map(|length| format!("{length} {unit}"));
             let hover = "Between the places where the rays of its ends meet the surface. In percent: \
                          how much longer that is than the bar.";
             let texts = [

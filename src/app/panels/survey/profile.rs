@@ -4,7 +4,7 @@ use egui_plot::{AxisHints, Line, Plot, PlotPoints, Points};
 
 use super::{copy, numbers, save};
 use crate::command::{Command, MeasuredTable};
-use crate::exports::{ProfileReport, is_of_a_stone, profile_csv, profile_table};
+use crate::exports::{ProfileReport, profile_csv, profile_table, stone_sides};
 use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::Drawn;
 use crate::render::MEASURED;
@@ -107,10 +107,11 @@ pub(super) fn profile(
         ["Toe before", "Angle of repose before"],
         ["Toe after", "Angle of repose after"],
     ];
-    for ([toe, angle], face) in names.into_iter().zip(&faces) {
+    let stones = stone_sides(&faces, profile);
+    for (([toe, angle], face), is_of_a_stone) in names.into_iter().zip(&faces).zip(stones) {
         if let Some(face) = face {
             rows.push((toe, height(face.toe.point.z)));
-            let doubt = match is_of_a_stone(face, profile) {
+            let doubt = match is_of_a_stone {
                 true => " (a stone's side)",
                 false => "",
             };

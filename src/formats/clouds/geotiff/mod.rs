@@ -88,7 +88,7 @@ pub(crate) fn read(
     if step > 1 {
         let (width, height) = georeference.cell();
         file.warnings.push(format!(
-            "it has {} x {} cells; every {step}th in both directions is taken, {:.3} x {:.3} apart",
+            "it has {} x {} cells; one of {step} in both directions is taken, {:.3} x {:.3} apart",
             layout.width,
             layout.height,
             width * f64::from(step),

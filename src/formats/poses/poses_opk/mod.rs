@@ -75,6 +75,8 @@ pub(crate) fn is_geojson(start: &[u8]) -> bool {
 pub(crate) fn read_table(bytes: &[u8], system: Option<&str>) -> Result<PosesFile, Fault> {
     let text = text_from_bytes(bytes)?;
     let mut header = None;
+    // Whether no line names the columns.
+    let mut is_silent = false;
     let mut list = List::default();
     let numbers = Numbers::of(text);
     let mut odd = OddAngles::default();
@@ -103,6 +105,7 @@ pub(crate) fn read_table(bytes: &[u8], system: Option<&str>) -> Result<PosesFile
             }
             continue;
         }
+        is_silent |= header.is_none();
         let Header {
             places,
             camera,
@@ -127,6 +130,11 @@ pub(crate) fn read_table(bytes: &[u8], system: Option<&str>) -> Result<PosesFile
         };
         let center = DVec3::new(number(1)?, number(2)?, number(3)?);
         let turned = [number(4)?, number(5)?, number(6)?];
+        if is_silent && is_quaternion(turned, fields.get(7)) {
+            let what = "no line names the columns, and the last four numbers may be a quaternion or angles";
+            let remedy = "begin with a line such as photo,x,y,z,qx,qy,qz,qw";
+            return Err(Fault::at(line, what, remedy));
+        }
         odd.angles(&turned);
         let camera = camera.and_then(|column| fields.get(column));
         list.add(PoseLine {
@@ -140,11 +148,25 @@ pub(crate) fn read_table(bytes: &[u8], system: Option<&str>) -> Result<PosesFile
     let header = header.unwrap_or(SILENT);
     let mut file = list.finish(header.in_degrees.then(|| DEGREES.to_owned()))?;
     file.warnings = numbers.warnings();
+    if is_silent {
+        let said =
+            "no line names its columns: they are taken for photo, x, y, z, omega, phi, kappa";
+        file.warnings.push(said.to_owned());
+    }
     file.take_odd(&odd);
     if header.angles == Angles::OfBody && !header.in_degrees {
         turn_to_the_map(&mut file, system)?;
     }
     Ok(file)
+}
+
+/// Whether three numbers and the field behind them, where a camera may be named, are as long together as a rotation's quaternion.
+fn is_quaternion(first: [f64; 3], last: Option<&String>) -> bool {
+    let Some(last) = last.and_then(|field| field.parse::<f64>().ok()) else {
+        return false;
+    };
+    let square: f64 = first.iter().chain([&last]).map(|part| part * part).sum();
+    (square - 1.0).abs() < 0.01
 }
 
 /// Turns rotations to true north, east and up to the axes of the map that the positions are on.

@@ -61,6 +61,21 @@ fn the_three_shared_forms_agree() {
     }
 }
 
+/// Whoever lost the header of a poses.csv learns what its numbers are taken for.
+#[test]
+fn columns_that_nobody_names_are_said() {
+    let angles = read_table(b"a.jpg,0,0,10,2,-4,3\n", None).unwrap();
+    assert!(angles.warnings[0].contains("taken for photo, x, y, z, omega, phi, kappa"));
+    let named = read_table(b"name,x,y,z,omega,phi,kappa\na.jpg,0,0,10,2,-4,3\n", None).unwrap();
+    assert!(named.warnings.is_empty(), "{:?}", named.warnings);
+    let quaternion = b"a.jpg,0,0,10,2,-4,3,1\nb.jpg,0,0,10,0.7071,0.7071,0,0\n";
+    let fault = read_table(quaternion, None).unwrap_err();
+    assert!(
+        fault.line == Some(2) && fault.what.contains("may be a quaternion"),
+        "{fault}"
+    );
+}
+
 /// Closed forms of the drone's angles, in Orthority's three kinds of tables.
 #[test]
 fn orthoritys_angles_of_the_body() {
