@@ -3,8 +3,9 @@
 
 use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::Arc;
 
-use egui::{FontId, Label, Response, RichText, TextStyle, Ui, WidgetInfo};
+use egui::{FontId, Galley, Label, Response, RichText, TextStyle, Ui, WidgetInfo, WidgetText};
 
 /// What stands for the middle.
 const DOTS: char = '…';
@@ -160,20 +161,23 @@ pub(crate) fn unbroken(text: &str) -> String {
 /// or by the panel's edge, dots stand for it. `text` is in the hover text then.
 pub(crate) fn whole_number(ui: &mut Ui, text: impl Into<RichText>, selectable: bool) -> Response {
     let text: RichText = text.into();
-    let said = text.text().to_owned();
-    let wide = egui::WidgetText::from(text.clone());
     let mode = Some(egui::TextWrapMode::Extend);
-    let galley = wide.into_galley(ui, mode, f32::INFINITY, TextStyle::Body);
+    let text = WidgetText::from(text).into_galley(ui, mode, f32::INFINITY, TextStyle::Body);
+    whole(ui, text, selectable)
+}
+
+/// The same of a text that is laid out already, perhaps in several rows.
+pub(crate) fn whole(ui: &mut Ui, text: Arc<Galley>, selectable: bool) -> Response {
     let sight = ui.clip_rect();
     let left = ui.cursor().left().max(ui.max_rect().left());
-    let right = left + galley.size().x;
+    let right = left + text.size().x;
     // Beyond the edge nothing is seen of it.
     let is_whole = right <= sight.right() + 0.1 && left >= sight.left() - 0.1;
     let is_hidden = left >= sight.right() || right <= sight.left();
     if is_whole || is_hidden {
-        return ui.add(Label::new(text).selectable(selectable).extend());
+        return ui.add(Label::new(text).selectable(selectable));
     }
-    let (place, response) = ui.allocate_exact_size(galley.size(), egui::Sense::hover());
+    let (place, response) = ui.allocate_exact_size(text.size(), egui::Sense::hover());
     let seen = place.intersect(sight);
     let (at, anchor) = match left < sight.left() {
         true => (seen.right_center(), egui::Align2::RIGHT_CENTER),
@@ -182,8 +186,8 @@ pub(crate) fn whole_number(ui: &mut Ui, text: impl Into<RichText>, selectable: b
     let font = TextStyle::Body.resolve(ui.style());
     let color = ui.visuals().weak_text_color();
     ui.painter().text(at, anchor, DOTS, font, color);
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &said));
-    response.on_hover_text(&said)
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, text.text()));
+    response.on_hover_text(text.text())
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! From a photo to its label image: an engine, the tree, the choice.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use fragscale_core::fault::Fault;
 use fragscale_core::jobs::Progress;
@@ -85,15 +85,40 @@ pub fn delineate(
     Ok(found.outlines.into_labels())
 }
 
-/// What is left out is no rock. How many pixels were fragments before.
-pub fn leave_out(labels: &mut LabelImage, left_out: &[bool]) -> usize {
-    let places = labels.labels.iter_mut().zip(left_out);
-    let mut fragments = 0;
-    for (label, _) in places.filter(|(_, is_left_out)| **is_left_out) {
-        fragments += usize::from(*label != NOT_ROCK && *label != FINES);
-        *label = NOT_ROCK;
+/// What fragments lost where pixels were left out.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct LeftOut {
+    /// How many of their pixels were left out.
+    pub pixels: usize,
+    /// Those of which more than half was, by number: they are no rock altogether.
+    pub gone: BTreeSet<u32>,
+}
+
+/// What is left out is no rock, and with it all of a fragment of which more than half is: of a ball whose outline is a little too narrow
+/// no rim is left, which would be measured as a fragment as wide as the ball.
+pub fn leave_out(labels: &mut LabelImage, left_out: &[bool]) -> LeftOut {
+    if !left_out.contains(&true) {
+        return LeftOut::default();
     }
-    fragments
+    let areas = labels.areas();
+    let mut lost = vec![0_usize; areas.len()];
+    for (label, _) in (labels.labels.iter().zip(left_out)).filter(|(_, is_left_out)| **is_left_out)
+    {
+        if let Some(lost) = lost.get_mut(*label as usize) {
+            *lost += 1;
+        }
+    }
+    // Fines are no fragment.
+    let fragments = || (0_u32..).zip(lost.iter().zip(&areas)).skip(1);
+    let gone = fragments().filter(|(_, (lost, area))| 2 * **lost > **area);
+    let gone: BTreeSet<u32> = gone.map(|(number, _)| number).collect();
+    let pixels = fragments().map(|(_, (lost, _))| lost).sum();
+    for (label, is_left_out) in labels.labels.iter_mut().zip(left_out) {
+        if *is_left_out || gone.contains(label) {
+            *label = NOT_ROCK;
+        }
+    }
+    LeftOut { pixels, gone }
 }
 
 /// Small fragments become fines; the others are numbered anew. What number each has now, in the order of those
@@ -112,4 +137,33 @@ fn without_small(labels: &mut LabelImage, least_area: f64) -> Vec<Option<u32>> {
         *label = numbers[*label as usize - 1].unwrap_or(FINES);
     }
     numbers
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of the first of two fragments three of four pixels are left out, of the second one of three, and one of fines.
+    #[test]
+    fn no_rim_of_what_is_left_out_is_a_fragment() {
+        let row = |labels: [u32; 9]| LabelImage {
+            width: 9,
+            height: 1,
+            labels: labels.to_vec(),
+        };
+        let before = row([0, 1, 1, 1, 1, 2, 2, 2, NOT_ROCK]);
+        let is_left_out = |place: usize| place == 0 || (2..=5).contains(&place) || place == 8;
+        let left_out: Vec<bool> = (0..9).map(is_left_out).collect();
+        let mut labels = before.clone();
+        let lost = leave_out(&mut labels, &left_out);
+        let out = NOT_ROCK;
+        assert_eq!(labels, row([out, out, out, out, out, out, 2, 2, out]));
+        assert_eq!((lost.pixels, lost.gone), (4, BTreeSet::from([1])));
+        // Where nothing is left out all stays.
+        for nothing in [&[][..], &[false; 9]] {
+            let mut labels = before.clone();
+            assert_eq!(leave_out(&mut labels, nothing), LeftOut::default());
+            assert_eq!(labels, before);
+        }
+    }
 }

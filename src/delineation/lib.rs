@@ -40,7 +40,7 @@ pub mod tree;
 mod votes;
 
 pub use classical::Classical;
-pub use delineating::{Delineated, delineate, delineated, leave_out};
+pub use delineating::{Delineated, LeftOut, delineate, delineated, leave_out};
 pub use engine::{Engine, Habits, Outlined};
 pub use engines::{ENGINES, engine_called};
 pub use evidence::Evidence;

@@ -1,5 +1,6 @@
 //! A flight's photo on its way to fragments: the same for the command and the window.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use fragscale_core::camera::Camera;
@@ -14,7 +15,7 @@ use fragscale_core::scale::{FieldGrid, ImageKind, Interval, ScaleField};
 use fragscale_core::units::LengthUnit;
 use image::RgbImage;
 
-use crate::delineating::leave_out;
+use crate::delineating::{LeftOut, leave_out};
 use crate::engine::Habits;
 use crate::mass::PhotoFragments;
 use crate::measures::{SieveShape, measured};
@@ -44,17 +45,29 @@ pub fn left_out(settings: &FlightSettings, photo: &Photo, camera: &Camera) -> Ve
     mask.pixels().map(|pixel| pixel.0 == [0; 3]).collect()
 }
 
-/// What the scale objects cover that the flight masks is no rock in outlines that were there before them; says so where
-/// fragments lay there.
+/// What scale objects take off outlines that were there before them.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct TakenOff {
+    /// The fragments that lie on one with more than half of them: no rock altogether.
+    pub gone: BTreeSet<u32>,
+    /// What is to be said where fragments lay there.
+    pub note: Option<String>,
+}
+
+/// What the scale objects cover that the flight masks is no rock in outlines that were there before them, and a fragment that lies on
+/// one with more than half of it is none altogether.
 pub fn take_off_objects(
     labels: &mut LabelImage,
     settings: &FlightSettings,
     photo: &Photo,
     camera: &Camera,
-) -> Option<String> {
-    let covered = leave_out(labels, &left_out(settings, photo, camera));
-    (covered > 0)
-        .then(|| "what its scale objects cover is outlined as rock, and counts as none".to_owned())
+) -> TakenOff {
+    let LeftOut { pixels, gone } = leave_out(labels, &left_out(settings, photo, camera));
+    let covered = "what its scale objects cover is outlined as rock, and counts as none";
+    TakenOff {
+        gone,
+        note: (pixels > 0).then(|| covered.to_owned()),
+    }
 }
 
 /// The relative standard error of a photo's scale, the mean of both edges' best line; `None` where it is not known.

@@ -416,7 +416,8 @@ fn a_scale_object_traced_later_is_taken_off() {
     desk.press(Modifiers::COMMAND, Key::S);
     let ring = (0..12).map(|step| {
         let angle = f64::from(step) * std::f64::consts::TAU / 12.0;
-        let place = BALL + DVec2::from_angle(angle) * 72.0;
+        // A little too narrow: a rim is left beyond it.
+        let place = BALL + DVec2::from_angle(angle) * 66.0;
         format!("[{:.1}, {:.1}]", place.x, place.y)
     });
     let ring: Vec<String> = ring.collect();
@@ -430,6 +431,19 @@ fn a_scale_object_traced_later_is_taken_off() {
     desk.click(Role::Tab, "Fragments");
     assert!(desk.says("what its scale objects cover is outlined as rock, and counts as none"));
     assert!(whole(&desk) < before, "{} {before}", whole(&desk));
+    // All of the ball is none, its rim as well, and nobody has to look at it.
+    let of = outlines(&desk);
+    let ball = of.now().fragment_at(BALL).expect("the ball");
+    assert!(of.now().sure(ball).is_some());
+    let measured = of.measured().expect("measured").fragment(ball);
+    assert!(measured.is_none_or(|of| of.world.is_none()));
+    let on_objects = of.on_objects().expect("measured").len();
+    assert!(on_objects > 0 && of.now().doubtful().len() == of.doubtful.len() + on_objects);
+    assert!(of.doubtful.iter().all(|(number, _)| *number != ball));
+    assert!(desk.says("no rock, nothing to look at"));
+    click(&mut desk, BALL);
+    assert_eq!(desk.open().fragments.selected, Some(ball));
+    assert!(desk.says("It lies on a scale object: no rock, and not measured."));
     assert!(
         !desk.harness.state().state().is_changed(),
         "the outlines stay"

@@ -1,5 +1,7 @@
 //! What the outlines of a photo come to, and those of all photos.
 
+use std::collections::BTreeSet;
+
 use crate::delineation::intervals::SizeInterval;
 use crate::delineation::mass::{ByMass, PhotoFragments};
 use crate::delineation::measures::Fragment;
@@ -20,6 +22,8 @@ pub struct MeasuredFragments {
     pub notes: Vec<String>,
     /// The scale objects that were taken off the outlines.
     pub without: Vec<ScaleObject>,
+    /// The fragments that lie on them, by number: no rock, and not measured.
+    pub on_objects: BTreeSet<u32>,
 }
 
 /// What the outlines of all photos come to.

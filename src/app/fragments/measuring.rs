@@ -63,7 +63,7 @@ impl State {
                 None => Arc::new(delineation::photo::field(&flight, posed, progress)?),
             };
             let camera = flight.camera(posed);
-            let covered =
+            let taken_off =
                 delineation::photo::take_off_objects(&mut labels, &settings, posed, camera);
             let (shape, unit) = (SieveShape::Calibrated, flight.parts().unit);
             let measured =
@@ -74,13 +74,13 @@ impl State {
             let intervals = intervals(&[(&measured, steps)], doubts, &percents).unwrap_or_default();
             let coarse = by_mass.as_ref().ok();
             let coarse = coarse.and_then(|of| coarse_end_not_shown(of, &intervals));
-            let notes = covered
-                .into_iter()
+            let notes = (taken_off.note.into_iter())
                 .chain(measured.notes(&labels, habits.is_some()))
                 .chain(coarse);
             let measured = MeasuredFragments {
                 notes: notes.collect(),
                 without: objects,
+                on_objects: taken_off.gone,
                 photo: measured,
                 by_mass,
                 intervals,
@@ -97,7 +97,7 @@ impl State {
                 {
                     open.fragments.field = Some((photo, field));
                     if let Some(of) = open.fragments.photos.get_mut(&photo) {
-                        of.measured = Some((revision, Arc::new(measured)));
+                        of.take_measured(revision, measured);
                     }
                 }
                 // Changed meanwhile, or another photo: that one is next.

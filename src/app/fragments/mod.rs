@@ -30,7 +30,7 @@ mod network;
 mod outlined;
 mod outlining;
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
 pub use command::{FragmentStep, FragmentTool};
@@ -52,10 +52,12 @@ pub struct PhotoOutlines {
     pub revision: u64,
     /// Which revision the files hold.
     pub saved: Option<u64>,
-    /// Those that nobody looked at, the most doubtful first, with how sure they are.
+    /// Those that nobody looked at, the most doubtful first, with how sure they are; without those that lie on scale objects.
     pub doubtful: Vec<(u32, f64)>,
     /// What they come to; of which revision.
     pub measured: Option<(u64, Arc<MeasuredFragments>)>,
+    /// The fragments that lie on scale objects, by number, as they were measured last; and which outlining gave the numbers.
+    on_objects: (u64, BTreeSet<u32>),
     /// The numbers of the changes that were made, and of those that were undone, the last one last.
     made: Vec<u64>,
     undone: Vec<u64>,
@@ -95,6 +97,7 @@ impl PhotoOutlines {
             revision: 0,
             saved,
             measured: None,
+            on_objects: (0, BTreeSet::new()),
             made: Vec::new(),
             undone: Vec::new(),
             changes: 0,
@@ -135,6 +138,7 @@ impl PhotoOutlines {
         // Where nothing has changed it is that of now all the same.
         self.by.insert(self.revision, by);
         self.notes.insert(self.revision, notes);
+        self.list_doubtful();
     }
 
     /// As they are now.
@@ -190,7 +194,30 @@ impl PhotoOutlines {
 
     fn changed(&mut self) {
         self.revision = self.made.last().copied().unwrap_or(0);
-        self.doubtful = self.now().doubtful();
+        self.list_doubtful();
+    }
+
+    /// Takes what those of a revision come to.
+    fn take_measured(&mut self, revision: u64, measured: MeasuredFragments) {
+        if revision == self.revision {
+            self.on_objects = (self.outlined(), measured.on_objects.clone());
+            self.list_doubtful();
+        }
+        self.measured = Some((revision, Arc::new(measured)));
+    }
+
+    /// The fragments that lie on scale objects, by number, as far as that is known: they are no rock, and none to be looked at.
+    pub fn on_objects(&self) -> Option<&BTreeSet<u32>> {
+        let (outlined, on_objects) = &self.on_objects;
+        (*outlined == self.outlined()).then_some(on_objects)
+    }
+
+    fn list_doubtful(&mut self) {
+        let mut doubtful = self.now().doubtful();
+        if let Some(on_objects) = self.on_objects() {
+            doubtful.retain(|(number, _)| !on_objects.contains(number));
+        }
+        self.doubtful = doubtful;
     }
 }
 

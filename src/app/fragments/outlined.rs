@@ -109,12 +109,8 @@ impl Outlined {
                 (read.outlines.into_labels(), read.by, read.notes)
             }
         };
-        notes.extend(photo::take_off_objects(
-            &mut labels,
-            settings,
-            posed,
-            camera,
-        ));
+        let taken_off = photo::take_off_objects(&mut labels, settings, posed, camera);
+        notes.extend(taken_off.note);
         Ok((labels, by, notes))
     }
 }

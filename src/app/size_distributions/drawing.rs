@@ -36,7 +36,7 @@ pub struct MethodDrawing {
     pub mean: Vec<PlotPoint>,
     /// Mean of the trials, plus and less a standard deviation.
     pub spread: Area,
-    /// Points that are told by name: P50, P80.
+    /// Points of the fitted function that are told by name: P50, P80.
     pub marks: Vec<(String, PlotPoint)>,
     /// Percent errors against the reference.
     pub errors: Vec<PlotPoint>,
@@ -93,7 +93,12 @@ impl Drawing {
                 let told = fitted.percentiles.iter();
                 let told = told.filter(|p| MARKED_PERCENTILES.contains(&p.percent));
                 let labels = &fitted.labels;
-                told.map(move |p| (format!("P{} of {labels}", p.percent), at(p.size, p.percent)))
+                told.map(move |p| {
+                    (
+                        format!("P{} of {labels}, fitted", p.percent),
+                        at(p.size, p.percent),
+                    )
+                })
             });
             let compared = comparison.and_then(|c| {
                 let of = |m: &&crate::fragmentation::MethodComparison| m.curve.method == *method;
@@ -107,7 +112,7 @@ impl Drawing {
                 None => of_trials.collect(),
                 Some(mean) => MARKED_PERCENTILES
                     .map(|percent| {
-                        let name = format!("P{percent} of {method}, mean");
+                        let name = format!("P{percent} of {method}, mean, fitted");
                         (name, at(mean.fit.curve.size_at(percent), percent))
                     })
                     .to_vec(),

@@ -13,6 +13,14 @@ use crate::panels::rows::pairs;
 use crate::state::State;
 use crate::tasks::Task;
 
+/// Over the sizes of fragments: they are not those of a fitted function.
+pub(super) fn as_measured(of: &str, ui: &mut Ui) {
+    let hover = "P20 to P80 are read off the curve as measured. Size distributions fits a function to this curve: its percentiles are a \
+                 little beside these";
+    ui.strong(format!("{of}, by mass, as measured"))
+        .on_hover_text(hover);
+}
+
 /// What fragments come to, in the unit of lengths.
 pub(super) fn size_rows(
     state: &State,
@@ -57,7 +65,7 @@ pub(super) fn of_all_photos(
     commands: &mut Vec<Command>,
 ) {
     ui.separator();
-    ui.strong("All outlined photos, by mass");
+    as_measured("All outlined photos", ui);
     let is_busy = state.work.is_running(Task::MEASURE_ALL);
     let all = open.fragments.all.as_ref();
     ui.horizontal_wrapped(|ui| {

@@ -1,8 +1,10 @@
 //! The fragment that is looked at, the doubtful ones, and what all of them come to.
 
+use std::collections::BTreeSet;
+
 use egui::{Role, Ui, WidgetInfo};
 
-use super::all_photos::{say, size_rows};
+use super::all_photos::{as_measured, say, size_rows};
 use crate::command::{Asking, Command};
 use crate::delineation::measures::Fragment;
 use crate::fragments::{FragmentStep, MeasuredFragments, PhotoOutlines};
@@ -115,6 +117,9 @@ fn selected(
         }
     });
     match measured.and_then(|measured| measured.fragment(number)) {
+        _ if of.on_objects().is_some_and(|on| on.contains(&number)) => {
+            ui.weak("It lies on a scale object: no rock, and not measured.");
+        }
         Some(fragment) => measures(state, open, fragment, ui),
         None => {
             ui.weak("Being measured…");
@@ -175,6 +180,18 @@ fn doubtful(of: &PhotoOutlines, selected: Option<u32>, ui: &mut Ui, commands: &m
             commands.push(Command::Fragments(FragmentStep::NextDoubtful));
         }
     });
+    let on_objects = match of.on_objects().map_or(0, BTreeSet::len) {
+        0 => None,
+        1 => Some("1 fragment lies on a scale object: no rock, nothing to look at".to_owned()),
+        count => Some(format!(
+            "{count} fragments lie on scale objects: no rock, nothing to look at"
+        )),
+    };
+    if let Some(on_objects) = on_objects {
+        let hover = "More than half of it is within the outline of a scale object that is masked; its size counts nowhere";
+        ui.add(egui::Label::new(egui::RichText::new(on_objects).weak()).wrap())
+            .on_hover_text(hover);
+    }
     if doubtful.is_empty() {
         return;
     }
@@ -228,7 +245,7 @@ fn all(
     };
     let mut rows = size_rows(state, open, by_mass, &measured.intervals);
     rows.push(("Outlined by", outlined_by(&of.by().engine)));
-    ui.strong("This photo, by mass");
+    as_measured("This photo", ui);
     ui.horizontal_wrapped(|ui| take_along(state, ui, commands));
     pairs("fragments by mass", rows, ui);
     say(&measured.notes, ui);

@@ -15,6 +15,9 @@ use crate::state::State;
 /// What stands behind the method that the others are held against.
 const REFERENCE: &str = "reference";
 
+/// A text is laid out in whole points.
+const ROUNDING: f32 = 1.0;
+
 /// A trial of more photos is closed at first.
 const FEW: usize = 4;
 
@@ -135,11 +138,11 @@ fn check(
     let shown = shown.count();
     let mut all = shown == curves.len();
     let mixed = shown > 0 && !all;
-    let font = egui::TextStyle::Button.resolve(ui.style());
+    let font = egui::TextStyle::Body.resolve(ui.style());
     let spacing = ui.spacing();
     let gap = spacing.item_spacing.x;
     // What else is in the row: the box itself, what comes behind, the weight.
-    let of_box = spacing.icon_width + spacing.icon_spacing + 2.0 * spacing.button_padding.x;
+    let of_box = spacing.icon_width + spacing.icon_spacing + ROUNDING;
     let weight = weight_of(curves);
     let others = behind.into_iter().chain(weight.as_deref());
     let others: f32 = others.map(|text| text_width(ui, text) + gap).sum();

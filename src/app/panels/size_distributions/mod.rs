@@ -45,7 +45,7 @@ pub fn size_distributions(state: &State, ui: &mut egui::Ui, commands: &mut Vec<C
     if state.preferences.left_open {
         egui::Panel::left(("distributions", is_narrow))
             .resizable(true)
-            .default_size(270.0)
+            .default_size((width * 0.25).clamp(270.0, 400.0))
             .min_size(180.0)
             .max_size((width * left).max(180.0))
             .show(ui, |ui| {
@@ -63,7 +63,7 @@ pub fn size_distributions(state: &State, ui: &mut egui::Ui, commands: &mut Vec<C
     if state.preferences.right_open {
         egui::Panel::right(("distribution results", is_narrow))
             .resizable(true)
-            .default_size((width * 0.34).clamp(260.0, 420.0))
+            .default_size((width * 0.36).clamp(260.0, 480.0))
             .min_size(220.0)
             .max_size((width * right).max(220.0))
             .show(ui, |ui| results::results(state, ui, commands));

@@ -1,6 +1,9 @@
 //! A table of results: its texts can be selected, and it is copied whole for a spreadsheet. Only the
 //! rows in sight are drawn.
 
+use std::sync::Arc;
+
+use egui::Galley;
 use egui_extras::{Column, TableBuilder};
 
 use crate::command::Command;
@@ -10,8 +13,13 @@ use crate::numbers::significant_digits;
 /// The height of a row.
 const ROW: f32 = 18.0;
 
-/// The width of a column's name, at most.
-const LONGEST_HEAD: f32 = 140.0;
+/// The height of the head, at least.
+const HEAD: f32 = 20.0;
+
+/// How wide a row of a column's name is, at most, and how many such rows it may fill: a method's name can be long, and its numbers are
+/// what counts.
+const WIDEST_HEAD: f32 = 100.0;
+const HEAD_ROWS: f32 = 3.0;
 
 /// The height of a table that is longer.
 const TALLEST: f32 = 330.0;
@@ -78,6 +86,9 @@ impl Table {
             ui.data_mut(|data| data.insert_temp(id, texts));
             ui.ctx().request_discard("a table has new texts");
         }
+        let heads = self.head.iter().map(|(name, _)| laid_out(name, ui));
+        let heads: Vec<Arc<Galley>> = heads.collect();
+        let head_height = heads.iter().map(|name| name.size().y).fold(HEAD, f32::max);
         ui.spacing_mut().item_spacing.x = 12.0;
         TableBuilder::new(ui)
             .striped(true)
@@ -86,16 +97,14 @@ impl Table {
             .max_scroll_height(TALLEST)
             .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
             .columns(Column::auto().at_least(24.0), self.head.len())
-            .header(20.0, |mut header| {
-                for (name, hover) in &self.head {
+            .header(head_height, |mut header| {
+                for ((name, hover), galley) in self.head.iter().zip(heads) {
                     header.col(|ui| {
-                        // A method's name can be long; its numbers are what counts.
-                        let font = egui::TextStyle::Body.resolve(ui.style());
-                        let name = names::fitted(ui, name, &font, LONGEST_HEAD).into_owned();
-                        let name = egui::RichText::new(name).strong();
-                        let name = names::whole_number(ui, name, true);
+                        let label = names::whole(ui, galley, true);
+                        // Of a name that is cut the whole of it.
+                        let label = label.on_hover_text(name);
                         if !hover.is_empty() {
-                            name.on_hover_text(hover);
+                            label.on_hover_text(hover);
                         }
                     });
                 }
@@ -132,6 +141,15 @@ impl Table {
         }
         text
     }
+}
+
+/// A column's name as it stands in the head, in several rows where it is long.
+fn laid_out(name: &str, ui: &egui::Ui) -> Arc<Galley> {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let name = names::fitted(ui, name, &font, HEAD_ROWS * WIDEST_HEAD).into_owned();
+    let name = egui::WidgetText::from(egui::RichText::new(name).strong());
+    let mode = Some(egui::TextWrapMode::Wrap);
+    name.into_galley(ui, mode, WIDEST_HEAD, egui::TextStyle::Body)
 }
 
 /// A number with this many significant digits; a dash where there is none.

@@ -120,12 +120,8 @@ impl<'a> Maker<'a> {
             let by = OutlinedBy::Saved(read.by.habits);
             let (mut labels, mut notes) = (read.outlines.into_labels(), read.notes);
             let settings = &self.opened.settings;
-            notes.extend(photo::take_off_objects(
-                &mut labels,
-                settings,
-                photo,
-                camera,
-            ));
+            let taken_off = photo::take_off_objects(&mut labels, settings, photo, camera);
+            notes.extend(taken_off.note);
             return Ok(Outlined {
                 labels,
                 by,

@@ -68,7 +68,7 @@ fn tables(comparison: &Comparison, ui: &mut egui::Ui, commands: &mut Vec<Command
 
 fn shifts(comparison: &Comparison, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let unit = comparison.unit;
-    let mut table = Table::new(format!("Shifts of the percentiles, {unit}"));
+    let mut table = Table::new(format!("Shifts of the fitted percentiles, {unit}"));
     table.column("Percentile", "Sizes of the fitted functions");
     table.column(comparison.reference.method.as_str(), "The reference's size");
     let envelope = comparison.options.envelope_percent;

@@ -36,7 +36,7 @@ pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Co
     );
     parameters.column("R²", "Share of the variation that the function explains");
     parameters.column("Points", "How many points it is fitted to");
-    let mut percentiles = Table::new(format!("Percentiles of the fits, {unit}"));
+    let mut percentiles = Table::new(format!("Percentiles of the fitted functions, {unit}"));
     percentiles.column("Curve", "Method, trial");
     // The difference may end in ...9999; seven digits are what a level has.
     let confidence = ((1.0 - settings.level) * 1e9).round() / 1e7;
