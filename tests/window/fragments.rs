@@ -84,7 +84,8 @@ fn outlined_corrected_saved_and_read_again() {
     let measured = outlines(&desk).measured().expect("measured");
     let by_mass = measured.by_mass.as_ref().unwrap();
     assert_eq!(by_mass.whole + by_mass.cut, fragments(&first));
-    assert!(desk.says("This photo, by mass"));
+    // Size distributions has those of a fitted function.
+    assert!(desk.says("This photo, by mass, as measured"));
 
     // The ball is one, until a stroke goes through it.
     click(&mut desk, BALL);

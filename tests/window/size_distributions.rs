@@ -16,7 +16,7 @@ use fragscale::fragmentation::{FitOptions, Model, SieveSeries, Weighting, fit};
 use fragscale::units::LengthUnit;
 use tempfile::TempDir;
 
-use crate::desk::{Desk, flight};
+use crate::desk::{Desk, Written, flight};
 use crate::dropping::drop_on;
 use crate::random::Dice;
 
@@ -205,6 +205,57 @@ fn the_fits_are_those_of_the_core() {
     // The mean of trial 1's two photos.
     let first = &computed(&desk).analysis.trials.curves[1];
     assert_eq!(first.distribution.points()[0], [8.0, 7.0]);
+}
+
+/// Those of the page Fragments are of the curve as measured.
+#[test]
+fn percentiles_say_that_they_are_of_the_function() {
+    let (_folder, mut desk) = desk(&[("trials.csv", TRIALS)]);
+    assert!(desk.says("Percentiles of the fitted functions, mm"));
+    assert_eq!(
+        table(&desk, "Percentiles of the fitted functions, mm").len(),
+        4
+    );
+    let marks = computed(&desk)
+        .drawing
+        .methods
+        .iter()
+        .flat_map(|of| &of.marks);
+    assert!(marks.clone().count() > 0 && marks.clone().all(|(name, _)| name.ends_with(", fitted")));
+    desk.click(Role::Tab, "Against the reference");
+    assert!(desk.says("Shifts of the fitted percentiles, mm"));
+}
+
+/// With a weight behind it, as curves of fragments have one, a usual name is not cut at the left; in the head of a table a long one
+/// goes on in the next row.
+#[test]
+fn names_of_curves_have_the_room_that_is_there() {
+    let long = "sieve reference curve of the laboratory";
+    let usual = "fragscale (learned)";
+    let lines = TRIALS.lines().map(|line| match line.starts_with("method") {
+        true => format!("{line},weight\n"),
+        false => format!("{line},0.2029\n"),
+    });
+    let text = lines.collect::<String>();
+    let text = text.replace("sieve,", &format!("{long},"));
+    let text = text.replace("point cloud,", &format!("{usual},"));
+    let (_folder, mut desk) = desk(&[("trials.csv", &text)]);
+    // The plot's legend begins behind the panel.
+    let is_at_left = |place: egui::Rect| place.right() < 320.0;
+    let written = desk.written();
+    assert!(
+        written
+            .iter()
+            .any(|w| w.text.starts_with("weight") && is_at_left(w.place))
+    );
+    assert!(
+        written
+            .iter()
+            .any(|w| w.text == usual && is_at_left(w.place))
+    );
+    desk.click(Role::Tab, "Against the reference");
+    let in_rows = |w: &Written| w.text == long && w.rows.len() > 1;
+    assert!(desk.written().iter().any(in_rows));
 }
 
 #[test]

@@ -98,9 +98,6 @@ pub(super) fn of_all_photos(
     };
     rows.push(("Photos", format!("{count} of {of}")));
     pairs("fragments of all photos", rows, ui);
-    if all.sizes.is_some() {
-        ui.weak("P20 to P80 are read off the curve as measured; those of a fitted function are on Size distributions.");
-    }
     say(&all.notes, ui);
 }
 

@@ -100,9 +100,11 @@ impl Table {
             .header(head_height, |mut header| {
                 for ((name, hover), galley) in self.head.iter().zip(heads) {
                     header.col(|ui| {
-                        let label = names::whole(ui, galley, true);
-                        // Of a name that is cut the whole of it.
-                        let label = label.on_hover_text(name);
+                        let is_cut = galley.text() != name;
+                        let mut label = names::whole(ui, galley, true);
+                        if is_cut {
+                            label = label.on_hover_text(name);
+                        }
                         if !hover.is_empty() {
                             label.on_hover_text(hover);
                         }
