@@ -282,32 +282,6 @@ fn over_a_crest_derivatives_are_those_of_fields_computed_again() {
     }
 }
 
-/// A mesh from file, of a level plane, 10 below the camera: where it is 0.1 off, all of it, scales are off by 1 %, and by no more.
-#[test]
-fn a_stated_error_of_a_mesh_counts_once() {
-    let corner = |x: f64, y: f64| DVec3::new(x, y, 0.0);
-    let mesh = Surface::new(Cloud {
-        points: vec![
-            corner(-20.0, -20.0),
-            corner(20.0, -20.0),
-            corner(20.0, 20.0),
-            corner(-20.0, 20.0),
-        ],
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        ..Cloud::default()
-    })
-    .unwrap();
-    let errors = StatedErrors {
-        surface: Some(0.1),
-        ..StatedErrors::default()
-    };
-    let camera = camera(Distortion::None);
-    let found = compute(&mesh, &camera, &nadir(10.0), ImageKind::Undistorted, errors);
-    let top = found.uncertainty.unwrap().fitted_top.unwrap();
-    let share = top.standard_error / found.fitted.top;
-    assert!((share - 0.01).abs() < 1e-4, "{share}");
-}
-
 /// The derivatives are those of fields that are computed again, also obliquely and through a lens.
 #[test]
 fn derivatives_are_those_of_fields_computed_again() {
